@@ -43,6 +43,8 @@ def content(data, ping: int | None = None, array: str | None = None) -> dict:
     page["history"] = history(data, page["notes"])
     page["tracks"] = tracks(data, {number for _, number in views})
     page["notes"] += joined(page)
+    page["notes"].append(f"The samples are not here: the page holds levels of {data.samples} samples a "
+                         "phone. What it shows are the numbers of the pictures of asdic plot.")
     page["notes"] += data.warnings()
     return page
 
@@ -144,8 +146,9 @@ def joined(page) -> list:
     notes = []
     for panel in images:
         values, x, y = panel.pop("values"), panel.pop("x_edges"), panel.pop("y_edges")
-        columns = min(math.ceil(math.sqrt(factor)), values.shape[1])
-        rows = min(math.ceil(factor / columns), values.shape[0])
+        columns = factor if panel["name"] == "Pings" else math.ceil(math.sqrt(factor))
+        columns = min(columns, values.shape[1])
+        rows = 1 if panel["name"] == "Pings" else min(math.ceil(factor / columns), values.shape[0])
         panel["x"] = {"first": float(x[0]), "step": float((x[-1] - x[0]) / (len(x) - 1) * columns),
                       "last": float(x[-1])}
         panel["y"] = numbers(np.append(y[:-1:rows], y[-1]), 9)
@@ -259,8 +262,8 @@ def bearing_image(data, row, found) -> list:
                  f"beam level in {data.envelope(row).width:.0f} Hz", "dB re 1 µPa",
                  style.colour_limits(db, data.loudest_echo(row)))
     made["name"] = "Elevation–time" if where.kind == "vertical" else "Bearing–time"
-    made["about"] = (f"Conventional beams over {data.channels} phones. Bars: true echoes, from "
-                     "leading edge to end.")
+    made["about"] = (f"Conventional beams over {data.channels} phones, means over "
+                     f"{edges[1] - edges[0]:.3g} s. Bars: true echoes, from leading edge to end.")
     made["marks"] = [marks(e, signal.apparent(where, e.direction), "bar") for e in data.echoes(row)]
     return [made]
 
@@ -352,7 +355,8 @@ def level_lines(data, row, found):
         data.select_array(chosen_array)
     named = {"measured": ("measured, all frequencies", "ink"),
              "in band": (f"measured, in {width:.0f} Hz", "ink"), "noise": ("noise", style.GREY),
-             "reverberation": ("reverberation", style.SLATE), "echo": ("echo", style.VERMILION)}
+             "reverberation": ("reverberation", style.SLATE),
+             "echo": ("echo", levels.echo_colour(levels.all_echoes(data, row)))}
     lines = []
     for key, (time, db) in curves.items():
         if not np.isfinite(db).any():

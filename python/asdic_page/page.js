@@ -120,7 +120,7 @@ function axisTicks(axis, lo, hi, pixels) {
     const found = ticks(lo, hi, pixels / 40);
     return axis.label === "ping" ? found.filter(([v]) => Number.isInteger(v)) : found;
   }
-  const wanted = Math.max(3, pixels / 34);
+  const wanted = Math.max(3, pixels / 26);
   const place = axis.kind === "cosine" ? (d) => Math.cos(radians(d))
               : axis.kind === "sine" ? (d) => axis.upwards * Math.sin(radians(d)) : (d) => d;
   const name = axis.kind === "cosine"
@@ -138,7 +138,7 @@ function axisTicks(axis, lo, hi, pixels) {
     }
     if (found.length <= wanted) {
       found.sort((a, b) => a[0] - b[0]);
-      const gap = (hi - lo) * 15 / pixels;
+      const gap = (hi - lo) * 13 / pixels;
       return found.filter((t, k) => k === 0 || k === found.length - 1
         ? k === 0 || t[0] - found[0][0] >= gap
         : t[0] - found[k - 1][0] >= gap && found[found.length - 1][0] - t[0] >= gap);
@@ -775,7 +775,8 @@ class Rays extends Panel {
     c.fillStyle = css("--ink");
     c.textAlign = "center";
     c.textBaseline = "top";
-    for (const [v, name] of ticks(...this.speeds, 1.6)) c.fillText(name, this.speedAt(v), b.y + b.h + 6);
+    for (const [v, name] of ticks(...this.speeds, 1.6))
+      if (this.speedAt(v) < col.x + col.w - 16) c.fillText(name, this.speedAt(v), b.y + b.h + 6);
     c.fillText("m/s", col.x + col.w / 2, b.y + b.h + 21);
   }
   speedAt(v) { const col = this.profileBox; return col.x + col.w * (v - this.speeds[0]) / (this.speeds[1] - this.speeds[0]); }
@@ -955,13 +956,16 @@ class Plan extends Panel {
     for (const t of D.tracks) if (t.array === view().array && t.x[0] !== null) {
       c.globalAlpha = faded(t.target) ? 0.25 : 1;
       c.setLineDash(t.mirrored ? [5, 3] : []);
-      stroke(c, targetColour(t.target), S.target === t.target && t.target >= 0 ? 3 : 1.5, () =>
-        t.x.forEach((x, i) => (i ? c.lineTo(this.px(x - cx), this.py(t.y[i] - cy)) : c.moveTo(this.px(x - cx), this.py(t.y[i] - cy)))));
+      c.strokeStyle = t.target >= 0 ? targetColour(t.target) : "#ffffff";
+      c.lineWidth = t.target < 0 ? 0.8 : S.target === t.target ? 3.5 : 2;
+      c.beginPath();
+      t.x.forEach((x, i) => (i ? c.lineTo(this.px(x - cx), this.py(t.y[i] - cy)) : c.moveTo(this.px(x - cx), this.py(t.y[i] - cy))));
+      c.stroke();
       c.setLineDash([]);
       t.ping.forEach((p, i) => {
-        c.fillStyle = p === view().ping ? css("--choice") : targetColour(t.target);
+        c.fillStyle = p === view().ping ? css("--choice") : c.strokeStyle;
         c.beginPath();
-        c.arc(this.px(t.x[i] - cx), this.py(t.y[i] - cy), p === view().ping ? 6 : 2.5, 0, 7);
+        c.arc(this.px(t.x[i] - cx), this.py(t.y[i] - cy), p === view().ping ? 4.5 : 2, 0, 7);
         c.fill();
       });
     }
@@ -1092,8 +1096,9 @@ function chooseTarget(target) {
   drawOvers();
 }
 function choosePing(number, array = view().array) {
-  const k = D.views.findIndex((v) => v.ping === number && v.array === array);
-  if (k >= 0 && k !== S.view) show(k);
+  const off = D.views.map((v) => (v.array === array ? Math.abs(v.ping - number) : Infinity));
+  const k = off.indexOf(Math.min(...off));          // the nearest that is here
+  if (k !== S.view) show(k);
 }
 
 // ------------------------------------------------------------------ the page

@@ -38,8 +38,9 @@ PAGE = """<!DOCTYPE html>
 </header>
 <noscript><p>This page draws its panels with JavaScript, which is off.</p></noscript>
 <main>
-<div id="space"></div>
 <div id="time"></div>
+<div id="side">
+<div id="space"></div>
 <div id="words">
 <section class="card"><h2>This ping</h2><dl id="about"></dl><ul id="warnings"></ul>
 <p class="keys">Wheel or drag: zoom. Shift and drag: move. Double click: all of it. A click holds the time or chooses
@@ -50,6 +51,7 @@ what is under it. Keys: <kbd>Tab</kbd> to a panel, arrows, <kbd>+</kbd> <kbd>−
 <tbody></tbody></table></div></details>
 <section class="card"><h2>Scenario</h2><pre id="scenario" tabindex="0"></pre></section>
 <details class="card" open><summary>What is shown, and what not</summary><ul id="notes"></ul></details>
+</div>
 </div>
 </main>
 <div id="tip" role="status" hidden></div>

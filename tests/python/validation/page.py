@@ -1,0 +1,288 @@
+#!/usr/bin/env python3
+"""The page of `asdic plot --html`: one file that asks no network, and holds what the ping file holds.
+
+    ASDIC=build/ci/bin/asdic page.py
+
+How it looks and answers in a browser is tested by tests/python/browser/page_in_browser.py.
+"""
+import base64
+import html.parser
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[3]
+sys.path[:0] = [str(ROOT / "python"), str(ROOT / "tests" / "support")]
+
+import make_ping_file as synthetic  # noqa: E402
+from asdic_page import content, page  # noqa: E402
+from asdic_pictures import bearing_time, levels, processed, spectrogram  # noqa: E402
+from asdic_pictures.data import PingFile  # noqa: E402
+
+SCENARIO = """
+title = "a small sea </script><script>alert(1)</script>"   # see https://example.org
+[environment.sound_speed]
+kind = "munk"
+[environment.bottom]
+depth = 5000.0
+kind = "fluid"
+speed = 1600.0
+density = 1500.0
+attenuation_db_per_wavelength = 0.2
+[platform]
+position = [0.0, 0.0, 200.0]
+[transmitter]
+source_level_db = 215.0
+taper = "omnidirectional"
+[pulse]
+kind = "cw"
+frequency = 1000.0
+duration = 0.25
+[array]
+kind = "horizontal"
+phones = 8
+spacing = 0.75
+[[target]]
+name = "rock"
+position = [2000.0, 1500.0, 400.0]
+velocity = [-5.0, 0.0, 0.0]
+strength_db = 15.0
+[[target]]
+name = "reef"
+position = [1500.0, -900.0, 300.0]
+strength_db = 15.0
+[noise]
+spectral_level_db = 50.0
+[reverberation]
+enabled = false
+[pings]
+count = 2
+interval = 20.0
+recording_duration = 5.0
+sample_rate = 2500.0
+"""
+
+
+class Parts(html.parser.HTMLParser):
+    """Tags with their attributes, and the text of styles and scripts."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.tags, self.texts, self._inside = [], {}, None
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append((tag, dict(attrs)))
+        if tag in ("script", "style"):
+            self._inside = (tag, dict(attrs).get("id", ""))
+
+    def handle_endtag(self, tag):
+        if tag in ("script", "style"):
+            self._inside = None
+
+    def handle_data(self, text):
+        if self._inside:
+            self.texts[self._inside] = self.texts.get(self._inside, "") + text
+
+
+def data_of(path) -> dict:
+    return json.loads(Parts(path.read_text()).texts["script", "data"])
+
+
+def values(packed) -> np.ndarray:
+    """What the page's script makes of packed cells."""
+    whole = np.frombuffer(base64.b64decode(packed["data"]), "<u2").astype(float)
+    whole[whole == 65535] = np.nan
+    return (packed["low"] + whole * packed["step"]).reshape(packed["rows"], packed["columns"])
+
+
+class Page(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = Path(tempfile.mkdtemp(prefix="asdic_page_"))
+        cls.addClassCleanup(shutil.rmtree, cls.folder, True)
+        (cls.folder / "sea.toml").write_text(SCENARIO)
+        for words in (["ping", "sea.toml", "-o", "sea.h5", "-q"], ["process", "sea.h5", "-q"],
+                      ["plot", "sea.h5", "--html"]):
+            done = subprocess.run([os.environ["ASDIC"], *words], cwd=cls.folder, check=True,
+                                  capture_output=True, text=True)
+        cls.said, cls.path = done.stdout, cls.folder / "sea.html"
+        cls.parts = Parts(cls.path.read_text())
+        cls.data = data_of(cls.path)
+        cls.file = PingFile(cls.folder / "sea.h5")
+        cls.addClassCleanup(cls.file.file.close)
+
+    def setUp(self):
+        self.file.choose_ping(1)
+        self.file.select_array(0)
+
+    def image(self, name, view=0):
+        return next(i for i in self.data["views"][view]["images"] if i["name"] == name)
+
+    def test_one_file_that_asks_no_network(self):
+        self.assertEqual(self.said, "sea.html: a page for a browser\n")
+        self.assertEqual([tag for tag, _ in self.parts.tags if tag in ("script", "style", "img", "iframe",
+                                                                      "object", "embed", "base")],
+                         ["style", "script", "script"])
+        for tag, attributes in self.parts.tags:
+            for name in ("src", "href", "action", "srcset", "data", "poster"):
+                self.assertIn(attributes.get(name, "data:,"), ["data:,"], tag)
+        policy = [a["content"] for t, a in self.parts.tags if a.get("http-equiv") == "Content-Security-Policy"]
+        self.assertEqual([p.split(";")[0] for p in policy], ["default-src 'none'"])
+        text = self.path.read_text()
+        written_by_us = text.replace(self.parts.texts["script", "data"], "")
+        self.assertIn("https://", text)      # the scenario's own words stay what they are
+        for word in ("http:", "https:", "//www", "@import", "url(", "fetch(", "XMLHttpRequest", "import(",
+                     "WebSocket", "sendBeacon"):
+            self.assertNotIn(word, written_by_us)
+
+    def test_a_scenario_cannot_break_out_of_its_place(self):
+        self.assertIn("</script><script>alert(1)", self.data["title"])
+        self.assertNotIn("<script>alert", self.path.read_text())
+        self.assertEqual(self.data["scenario"], SCENARIO)
+
+    def test_what_is_on_it(self):
+        views = self.data["views"]
+        self.assertEqual([(v["ping"], v["array"]) for v in views], [(1, 0), (2, 0)])
+        for view in views:
+            self.assertEqual([i["name"] for i in view["images"]],
+                             ["Bearing–time", "Detections", "Doppler–time", "Spectrogram"])
+            self.assertIsNotNone(view["map"])
+            self.assertIsNotNone(view["levels"])
+        self.assertEqual([t["name"] for t in self.data["targets"]], ["rock", "reef"])
+        lines = SCENARIO.splitlines()
+        self.assertEqual([lines[first + 1] for first, _ in self.data["tables"]],
+                         ['name = "rock"', 'name = "reef"'])
+        self.assertEqual([lines[end] for _, end in self.data["tables"]], ["[[target]]", "[noise]"])
+        self.assertEqual(self.data["history"]["cells"]["rows"], 2)
+        self.assertTrue(any("samples are not here" in note for note in self.data["notes"]))
+
+    def test_cells_are_those_of_the_pictures(self):
+        """To half a step of 0.01 dB."""
+        m = processed.maps(self.file, 0)
+        for name, expected in (("Bearing–time", bearing_time.record(self.file, 0)[2]),
+                               ("Spectrogram", spectrogram.record(self.file, 0)[2]),
+                               ("Detections", m.beam_db), ("Doppler–time", m.doppler_db)):
+            np.testing.assert_allclose(values(self.image(name)["cells"]), expected, atol=0.0051)
+        self.assertGreater(np.abs(values(self.image("Detections", 1)["cells"]) - m.beam_db).max(), 1.0)
+        curves = levels.curves(self.file, 0)
+        for line in self.data["views"][0]["levels"]["lines"]:
+            key = {"measured, all frequencies": "measured"}.get(line["name"], line["name"])
+            time, db = curves[key if key in curves else "in band"]
+            np.testing.assert_allclose(np.array(line["y"], float), db, atol=0.0051)
+            self.assertAlmostEqual(line["first"], time[0], 6)
+
+    def test_truth_and_detections_are_those_of_the_file(self):
+        with h5py.File(self.folder / "sea.h5") as f:
+            echoes, found = f["echoes"], f["processed/detections"]
+            for view in self.data["views"]:
+                told = sorted(t for e in view["echoes"] for t in e["delay"])
+                rows = echoes["ping"][()] == view["ping"]
+                delay, level = echoes["delay"][()][rows], echoes["level_db"][()][rows]
+                target = echoes["target"][()][rows]
+                loud = [t for t, v, i in zip(delay, level, target) if v >= level[target == i].max() - 20.0]
+                np.testing.assert_allclose(told, sorted(loud), rtol=1e-7)
+                mine = found["ping"][()] == view["ping"]
+                self.assertGreater(mine.sum(), 0)
+                np.testing.assert_allclose(view["detections"]["time"], found["time"][()][mine], rtol=1e-7)
+                np.testing.assert_allclose(np.array(view["detections"]["bearing_deg"], float),
+                                           found["bearing_deg"][()][mine], rtol=1e-6)
+
+    def test_bearings_of_marks_are_true(self):
+        """What the page's script makes of a mark's place is the bearing of the target."""
+        for name in ("Bearing–time", "Detections"):
+            panel = self.image(name)
+            for mark, place in zip(panel["marks"], [(2000.0, 1500.0), (1500.0, -900.0)]):
+                off = np.degrees(np.arccos(np.clip(mark["y"][0], -1.0, 1.0)))
+                axis = panel["axis"]
+                both = [(axis["bearing"] + side * off) % 360.0 for side in (1, -1)]
+                true = np.degrees(np.arctan2(*place)) % 360.0
+                # the sound comes a little from below, which draws it towards broadside
+                self.assertLess(min(abs(b - true) for b in both), 2.0, (name, both, true))
+
+    def test_times_along_eigenrays_are_those_of_the_model(self):
+        """Of the target that rests: the other is elsewhere when it is struck. The drawn points of a
+        ray are some 10 m apart, so that chords and trapezoids err by far less than 1 ms.
+        """
+        with h5py.File(self.folder / "sea.h5") as f:
+            a = f["arrivals"]
+            first = (a["ping"][()] == 1) & (a["leg"][()] == 0) & (a["target"][()] == 1)
+            delays = a["delay"][()][first]
+        times = [line["t"][-1] for line in self.data["rays"]["lines"] if line["target"] == 1]
+        self.assertEqual(len(times), first.sum())
+        self.assertGreater(len(times), 2)
+        for time in times:
+            self.assertLess(np.abs(delays - time).min(), 1e-3)
+
+    def test_never_over_what_is_not_ours(self):
+        path = self.folder / "notes.html"
+        path.write_text("<html>mine</html>")
+        run = lambda *more: subprocess.run([os.environ["ASDIC"], "plot", "--html", "sea.h5", "--ping", "2",  # noqa: E731
+                                            "-o", *more], cwd=self.folder, capture_output=True, text=True)
+        refused = run("notes.html")
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("a file that asdic did not write", refused.stderr)
+        self.assertEqual(path.read_text(), "<html>mine</html>")
+        self.assertEqual(run("notes.html", "--force").returncode, 0)
+        self.assertEqual([v["ping"] for v in data_of(path)["views"]], [2])
+        page.write(self.file, path, 1)                    # a page of ours
+        self.assertEqual([v["ping"] for v in data_of(path)["views"]], [1])
+        self.assertEqual([p.name for p in self.folder.glob("*.part")], [])
+
+
+class Numbers(unittest.TestCase):
+    def test_joined_cells_keep_the_largest(self):
+        random = np.random.default_rng(1)
+        cells = random.normal(size=(7, 11))
+        cells[2, 5] = np.nan
+        joined = content.most(cells, 2, 3)
+        self.assertEqual(joined.shape, (4, 4))
+        for r in range(4):
+            for c in range(4):
+                block = cells[2 * r: 2 * r + 2, 3 * c: 3 * c + 3]
+                self.assertEqual(joined[r, c], np.nanmax(block))
+        self.assertTrue(np.isnan(content.most(np.full((2, 3), np.nan), 2, 3)).all())
+
+    def test_packed_values_come_back(self):
+        cells = np.array([[-60.0, 0.004, np.nan], [48.2, 13.0, -np.inf]])
+        back = values(content.packed(cells))
+        np.testing.assert_allclose(back, np.where(np.isfinite(cells), cells, np.nan), atol=0.0051)
+        self.assertTrue(np.isnan(values(content.packed(np.full((1, 2), np.nan)))).all())
+
+    def test_a_thinned_line_stays_where_it_is(self):
+        x = np.linspace(0.0, 1.0, 400)
+        y = np.sin(9.0 * x) ** 3
+        kept = content.needed(x, y, 2e-3)
+        self.assertLess(len(kept), 100)
+        self.assertLess(np.abs(np.interp(x, x[kept], y[kept]) - y).max(), 2e-2)   # steep: off along y
+        fewer = kept[::2]
+        self.assertGreater(np.abs(np.interp(x, x[fewer], y[fewer]) - y).max(), 2e-2)
+
+    def test_many_pings_are_chosen_from_end_to_end(self):
+        folder = Path(tempfile.mkdtemp(prefix="asdic_page_"))
+        self.addCleanup(shutil.rmtree, folder, True)
+        synthetic.write(folder / "many.h5", synthetic.Settings(
+            duration=1.0, sample_rate=2500.0, frequency=1000.0, pulse=0.1, phones=1, depth=500.0,
+            water=1200.0, targets=[(500.0, 65.0, 60.0)], pings=30))
+        with PingFile(folder / "many.h5") as file:
+            made = page.text(file)
+        data = json.loads(Parts(made).texts["script", "data"])
+        pings = [v["ping"] for v in data["views"]]
+        self.assertEqual((len(pings), pings[0], pings[-1]), (content.VIEWS, 1, 30))
+        self.assertIn("12 of 30 pings", " ".join(data["notes"]))
+        self.assertEqual(data["history"]["cells"]["rows"], 30)
+        left_out = " ".join(data["views"][0]["left_out"])
+        self.assertIn("one phone tells no direction", left_out)
+        self.assertIn("Run asdic process", left_out)
+
+
+if __name__ == "__main__":
+    unittest.main()
