@@ -197,6 +197,7 @@ class Panel {
 
   // -------- drawing
   resize() {
+    if (this.square) this.stage.style.height = Math.min(460, Math.max(240, this.stage.clientWidth - this.left - this.right + 44)) + "px";
     this.wide = this.stage.clientWidth;
     this.high = this.stage.clientHeight;
     this.scale = window.devicePixelRatio || 1;
@@ -237,7 +238,7 @@ class Panel {
   get zoomed() {
     return [this.x, this.y].some((a) => a.lo !== a.full[0] || a.hi !== a.full[1]);
   }
-  xTicks() { return ticks(this.x.lo, this.x.hi, this.box.w / 80); }
+  xTicks() { return ticks(this.x.lo, this.x.hi, this.box.w / 60); }
   yTicks() { return ticks(this.y.lo, this.y.hi, this.box.h / 40); }
   drawAxes(c) {
     const b = this.box;
@@ -440,6 +441,15 @@ class Panel {
 
 function faded(target) { return S.target !== null && S.target !== target; }
 
+/** The circle of a detection: in a target's colour where it is its echo, small and white where not. */
+function circle(c, x, y, target) {
+  c.globalAlpha = faded(target) ? 0.3 : 1;
+  const path = () => c.arc(x, y, target >= 0 ? 9 : 4.5, 0, 7);
+  if (target >= 0) stroke(c, targetColour(target), S.target === target ? 3 : 1.8, path);
+  else { c.strokeStyle = "#ffffff"; c.lineWidth = 1.2; c.beginPath(); path(); c.stroke(); }
+  c.globalAlpha = 1;
+}
+
 /** A mark of the truth or of a detection, with a rim that shows on any colour. */
 function stroke(c, colour, width, path) {
   for (const [style, more] of [[css("--rim"), 2.4], [colour, 0]]) {
@@ -454,9 +464,8 @@ function stroke(c, colour, width, path) {
 // ------------------------------------------------------------------ images over time
 
 class TimeImage extends Panel {
-  constructor(key, spec, options = {}) {
+  constructor(spec, options = {}) {
     super(spec.name, spec.about, options);
-    this.key = key;
     this.take(spec);
   }
   take(spec) {
@@ -518,7 +527,7 @@ class TimeImage extends Panel {
     const long = view().duration;
     for (const m of this.spec.marks) {
       c.globalAlpha = faded(m.target) ? 0.25 : 1;
-      const width = S.target === m.target ? 3 : 1.6, colour = targetColour(m.target);
+      const width = S.target === m.target ? 3.2 : 2, colour = targetColour(m.target);
       for (let i = 0; i < m.x.length; ++i) {
         const x = this.px(m.x[i]), y = this.py(m.y[i]);
         stroke(c, colour, width, () => {
@@ -537,13 +546,8 @@ class TimeImage extends Panel {
     }
     c.globalAlpha = 1;
     const found = view().detections;
-    if (this.spec.found && found) for (let i = 0; i < found.time.length; ++i) {
-      const target = found.target[i], mine = target >= 0;
-      c.globalAlpha = faded(target) ? 0.3 : 1;
-      stroke(c, mine ? targetColour(target) : "#ffffff", S.target === target && mine ? 3 : mine ? 1.8 : 1.2, () =>
-        c.arc(this.px(found.time[i]), this.py(this.spec.found[i]), mine ? 9 : 5, 0, 7));
-    }
-    c.globalAlpha = 1;
+    if (this.spec.found && found) for (let i = 0; i < found.time.length; ++i)
+      circle(c, this.px(found.time[i]), this.py(this.spec.found[i]), found.target[i]);
     if (this.spec.axis.label === "ping") {
       const y0 = this.py(view().ping - 0.5), y1 = this.py(view().ping + 0.5), b = this.box;
       c.strokeStyle = css("--choice");
@@ -864,7 +868,7 @@ class Rays extends Panel {
 
 class Plan extends Panel {
   constructor(spec) {
-    super("Range and bearing", "", {place: "space", height: 440, right: 84, x: {lo: -1, hi: 1, full: [-1, 1]}});
+    super("Range and bearing", "", {place: "space", square: true, right: 84, x: {lo: -1, hi: 1, full: [-1, 1]}});
     this.take(spec);
   }
   take(spec) {
@@ -970,12 +974,7 @@ class Plan extends Panel {
       });
     }
     const f = view().detections;
-    for (const [x, y, i] of this.places()) {
-      const target = f.target[i], mine = target >= 0;
-      c.globalAlpha = faded(target) ? 0.3 : 1;
-      stroke(c, mine ? targetColour(target) : "#ffffff", S.target === target && mine ? 3 : mine ? 1.8 : 1.2, () =>
-        c.arc(this.px(x), this.py(y), mine ? 9 : 5, 0, 7));
-    }
+    for (const [x, y, i] of this.places()) circle(c, this.px(x), this.py(y), f.target[i]);
     for (const t of s.targets) {
       c.globalAlpha = faded(t.target) ? 0.3 : 1;
       star(c, this.px(t.x), this.py(t.y), S.target === t.target ? 12 : 8, targetColour(t.target));
@@ -1193,9 +1192,9 @@ function start() {
   if (D.rays) new Rays(D.rays);
   const withMap = D.views.find((v) => v.map);
   if (withMap) plan = new Plan(withMap.map);
-  if (D.history) past = new TimeImage("history", D.history, {wheel: "x", height: 120 + 12 * Math.min(20, D.history.cells.rows)});
+  if (D.history) past = new TimeImage(D.history, {wheel: "x", height: 150 + 10 * Math.min(20, D.history.cells.rows)});
   for (const v of D.views) for (const spec of v.images)
-    if (!images[spec.name]) images[spec.name] = new TimeImage(spec.name, spec, {wheel: "x", height: spec.name === "Detections" ? 230 : 270});
+    if (!images[spec.name]) images[spec.name] = new TimeImage(spec, {wheel: "x", height: spec.name === "Detections" ? 230 : 270});
   const withLevels = D.views.find((v) => v.levels);
   if (withLevels) levels = new Lines(withLevels.levels);
   T.lo = D.views[0].time[0];
