@@ -43,8 +43,8 @@ def content(data, ping: int | None = None, array: str | None = None) -> dict:
     page["history"] = history(data, page["notes"])
     page["tracks"] = tracks(data, {number for _, number in views})
     page["notes"] += joined(page)
-    page["notes"].append(f"The samples are not here: the page holds levels of {data.samples} samples a "
-                         "phone. What it shows are the numbers of the pictures of asdic plot.")
+    page["notes"].append(f"The {data.samples // data._finer} samples of each phone are not here. What is shown "
+                         "are the numbers of the pictures of asdic plot.")
     page["notes"] += data.warnings()
     return page
 

@@ -1089,7 +1089,7 @@ function chooseTarget(target) {
     line.classList.toggle("chosen", Boolean(mine));
     if (mine && !first) first = line;
   });
-  if (first) { const box = $("scenario"); box.scrollTop = first.offsetTop - box.offsetTop - 20; }
+  if (first) { const box = $("scenario"); box.scrollTop = first.offsetTop - 20; }
   for (const row of document.querySelectorAll("#found tbody tr"))
     row.classList.toggle("chosen", target !== null && Number(row.dataset.target) === target);
   drawOvers();
