@@ -150,4 +150,11 @@ else
   verdict serve FAILED "$(tail -n 1 <<<"$said")"
 fi
 
+# The page of asdic plot --html in headless Chromium.
+if said=$(/usr/bin/python3 tests/python/browser/page_in_browser.py 2>&1); then
+  verdict browser good "$(grep '^Ran' <<<"$said")"
+else
+  verdict browser FAILED "$(grep '^FAIL\|^ERROR\|Error' <<<"$said" | head -n 3 | tr '\n' ' ')"
+fi
+
 [ "$failures" = 0 ] && echo "deep check: all good" || { echo "deep check: $failures failed"; exit 1; }

@@ -14,6 +14,7 @@ from . import bellhop
 from .channel import Channel
 from .datasets import group
 from .files import open  # noqa: A004  asdic.open
+from .pages import page
 from .processing import Processed, process
 from .scenario import Scenario, settings
 from .studies import Measure, StudyResult, read_study, study
@@ -31,4 +32,4 @@ def __getattr__(name: str):
 
 __all__ = ["Arrivals", "AsdicWarning", "Channel", "InputError", "Measure", "Processed",
            "RunError", "Scenario", "Stopped", "StudyResult", "bellhop", "build", "group", "open",
-           "process", "read_study", "settings", "study", "version"]
+           "page", "process", "read_study", "settings", "study", "version"]

@@ -10,7 +10,7 @@ import math
 import re
 
 import numpy as np
-from asdic_pictures import (bearing_time, levels, processed, range_bearing, rays, signal,
+from asdic_pictures import (bearing_time, bearings, levels, processed, range_bearing, rays, signal,
                             spectrogram, style, sweep)
 
 CELLS = 1_500_000      # of all images of a page: about 4 MB of text
@@ -30,10 +30,9 @@ def content(data, ping: int | None = None, array: str | None = None) -> dict:
             "version": data._text(data.file.attrs, "program_version") or "",
             "scenario": scenario(data), "targets": [], "notes": notes,
             "arrays": data.array_names, "processed": processed.there(data),
-            "colours": [signal_colour(i) for i in range(256)], "views": []}
+            "colours": [map_colour(i) for i in range(256)], "themes": themes(), "views": []}
     page["tables"] = target_lines(page["scenario"])
-    page["targets"] = [{"name": name, "colour": style.colour(i)}
-                       for i, name in enumerate(data.target_names)]
+    page["targets"] = list(data.target_names)
     page["warnings"] = warnings(data)
     for row, number in views:
         page["views"].append(view(data, row, number))
@@ -72,8 +71,18 @@ def select(data, row: int, array: int) -> None:
     data.select_array(array)
 
 
-def signal_colour(i: int) -> str:
-    red, green, blue = (round(255 * part) for part in style.plt.get_cmap(style.MAP)(i)[:3])
+def themes() -> dict:
+    """Colours of the pictures' themes: of targets, in their order, and of levels."""
+    found = {}
+    for name in ("light", "dark"):
+        with style.look(name):
+            found[name] = {"targets": list(style.TARGETS), "noise": style.GREY,
+                           "reverberation": style.SLATE, "several": style.BROWN}
+    return found
+
+
+def map_colour(i: int) -> str:
+    red, green, blue = (round(255 * part) for part in style.matplotlib.colormaps[style.MAP](i)[:3])
     return f"{red:02x}{green:02x}{blue:02x}"
 
 
@@ -164,20 +173,20 @@ def joined(page) -> list:
 
 # ---------------------------------------------------------------- axes
 
-def cosine_axis(axis, label: str, side: int) -> dict:
-    """Even in the cosine of the angle to a line, whose two sides look alike. Labels are of its right
-    side (side 1) or left (-1), seen along the axis.
+def cosine_axis(axis) -> dict:
+    """Even in the cosine of the angle to a line, whose two sides look alike: labels are of its first
+    side, as in the pictures (bearings.py).
     """
-    return {"kind": "cosine", "bearing": number(np.degrees(np.arctan2(axis[0], axis[1])) % 360.0, 9),
-            "label": label, "side": side}
+    return {"kind": "cosine", "ahead": number(bearings.ahead(axis) % 360.0, 9),
+            "label": f"{bearings.TRUE} ({bearings.side(axis, False)} side)"}
 
 
 def sine_axis(upwards: float = 1.0) -> dict:
-    return {"kind": "sine", "upwards": upwards, "label": "look elevation, up positive"}
+    return {"kind": "sine", "upwards": upwards, "label": bearings.UPWARDS}
 
 
 def azimuth_axis() -> dict:
-    return {"kind": "bearing", "label": "look bearing, true"}
+    return {"kind": "bearing", "label": bearings.TRUE}
 
 
 def linear_axis(label: str, unit: str, **more) -> dict:
@@ -187,7 +196,7 @@ def linear_axis(label: str, unit: str, **more) -> dict:
 def scan_axis(where) -> dict:
     """Of a bearing–time record."""
     if where.kind == "horizontal":
-        return cosine_axis(where.axis, "look bearing, true", -1)
+        return cosine_axis(where.axis)
     return sine_axis() if where.kind == "vertical" else azimuth_axis()
 
 
@@ -196,7 +205,7 @@ def map_axis(m) -> dict:
     if m.kind != "line":
         return azimuth_axis()
     return sine_axis(1.0 if m.axis[2] < 0 else -1.0) if m.upright \
-        else cosine_axis(m.axis, "look bearing, true", 1)
+        else cosine_axis(m.axis)
 
 
 # ---------------------------------------------------------------- views
@@ -278,11 +287,11 @@ def detection_images(data, row, found) -> list:
         return []
     m, t = processed.maps(data, row), processed.detections(data, row)
     found["detections"] = detections(data, t)
-    edges = style.cell_edges(m.time)
+    edges, limits = style.cell_edges(m.time), processed.limits(data, row, m)
     made = []
     if m.kind != "point":
         beams = image(m.beam_db, edges, style.cell_edges(m.angle), map_axis(m),
-                      "power over the background", "dB", over_background(m.beam_db))
+                      "power over the background", "dB", limits)
         beams |= {"name": "Detections", "found": numbers(m.angle_of(t), 8),
                   "about": "Power over the background in every beam, the largest of all Doppler "
                            "filters. Circles: found. Crosses: true echoes."}
@@ -291,7 +300,7 @@ def detection_images(data, row, found) -> list:
         shift = data.centre_frequency * (m.doppler - 1.0)
         doppler = image(m.doppler_db, edges, style.cell_edges(shift),
                         linear_axis("Doppler shift", "Hz", **speeds(data, row)),
-                        "power over the background", "dB", over_background(m.doppler_db))
+                        "power over the background", "dB", limits)
         doppler |= {"name": "Doppler–time",
                     "found": numbers(data.centre_frequency * (t["doppler_factor"] - 1.0), 7),
                     "about": "Power over the background in every Doppler filter, the largest of all "
@@ -303,12 +312,6 @@ def detection_images(data, row, found) -> list:
                 else m.angle_of_travel(e.direction)
             panel["marks"].append(marks(e, y, "cross"))
     return made
-
-
-def over_background(db) -> tuple:
-    """Limits of colour: all that is there, from the background up."""
-    good = db[np.isfinite(db)]
-    return 0.0, max(30.0, 5.0 * math.ceil(float(good.max(initial=0.0)) / 5.0))
 
 
 def detections(data, t) -> dict:
@@ -332,7 +335,7 @@ def spectrogram_image(data, row) -> dict:
     tone = speeds(data, row) if data.pulse_sweep == 0 else {}
     made = image(db, style.cell_edges(time), style.cell_edges(frequency - data.centre_frequency),
                  linear_axis(f"frequency above {data.centre_frequency:g} Hz", "Hz", **tone),
-                 "spectral level", "dB re 1 µPa²/Hz", spectrogram.limits(data, row, db, window))
+                 "spectral level", "dB re 1 µPa²/Hz", spectrogram.colour_limits(data, row, db, window))
     phones = "1 phone" if data.channels == 1 else f"mean over {data.channels} phones"
     made |= {"name": "Spectrogram", "about": f"{phones[0].upper()}{phones[1:]}, windows of "
              f"{window:.3g} s. Bars: true echoes."}
@@ -353,10 +356,12 @@ def level_lines(data, row, found):
         channels = data.channels
     finally:
         data.select_array(chosen_array)
+    heard = {e.target for e in levels.all_echoes(data, row)}
     named = {"measured": ("measured, all frequencies", "ink"),
-             "in band": (f"measured, in {width:.0f} Hz", "ink"), "noise": ("noise", style.GREY),
-             "reverberation": ("reverberation", style.SLATE),
-             "echo": ("echo", levels.echo_colour(levels.all_echoes(data, row)))}
+             "in band": (f"measured, in {width:.0f} Hz", "ink"), "noise": ("noise", "noise"),
+             "reverberation": ("reverberation", "reverberation"),
+             "echo": ("echo", int(heard.pop())) if len(heard) == 1
+             else (f"echo, all {len(heard)} targets", "several")}
     lines = []
     for key, (time, db) in curves.items():
         if not np.isfinite(db).any():
@@ -398,7 +403,7 @@ def map_panel(data, row) -> dict:
     return {"name": "Range and bearing", "axis": map_axis(m), "angles": numbers(m.angle, 8),
             "sides": sides, "centre": numbers(centre, 8), "targets": targets,
             "sender": numbers(sender) if np.hypot(*sender[:2]) > 1.0 else None,
-            "unit": "dB", "what": "power over the background", "limits": over_background(m.beam_db),
+            "unit": "dB", "what": "power over the background", "limits": processed.limits(data, row, m),
             "about": "By the sound paths, north up. Circles: found. Stars: where targets are at the "
                      "ping." + (" The array cannot tell left from right: both sides are drawn."
                                 if m.kind == "line" else "")}

@@ -22,8 +22,10 @@ const distance = (r) => (Math.abs(r) >= 1000 ? (r / 1000).toFixed(3).replace("-"
                                              : r.toFixed(1).replace("-", "−") + " m");
 const turned = (b) => ((b % 360) + 360) % 360;
 const bearing = (b) => turned(b).toFixed(1).replace(/^360\.0/, "0.0") + "°";
-const targetName = (i) => (D.targets[i] ? D.targets[i].name : "target " + (i + 1));
-const targetColour = (i) => (i >= 0 && D.targets[i] ? D.targets[i].colour : css("--quiet"));
+const targetName = (i) => D.targets[i] || "target " + (i + 1);
+const isDark = () => getComputedStyle(document.documentElement).colorScheme.includes("dark");
+const themed = () => D.themes[isDark() ? "dark" : "light"];
+const targetColour = (i) => (i >= 0 ? themed().targets[i % themed().targets.length] : css("--quiet"));
 const foundBy = (i) => (i >= 0 ? "echo of " + targetName(i)
                         : i === -2 ? "the transmitter's own sound"
                         : i === -3 ? "of another ping" : "false alarm");
@@ -91,11 +93,13 @@ function nearest(values, v) {
 const radians = (d) => d * Math.PI / 180, degrees = (r) => r * 180 / Math.PI;
 const clamp = (u) => Math.max(-1, Math.min(1, u));
 
-/** The true bearing of a line's coordinate, on the side that the axis tells; and on the other. */
+/** The true bearings of a line's coordinate: on its first side, where they rise with it, and on the other. */
 function sides(axis, u) {
-  const off = degrees(Math.acos(clamp(u)));
-  return [turned(axis.bearing + axis.side * off), turned(axis.bearing - axis.side * off)];
+  const off = degrees(Math.acos(clamp(-u)));
+  return [turned(axis.ahead + off), turned(axis.ahead - off)];
 }
+/** The coordinate of a true bearing. */
+const cosine = (axis, b) => -Math.cos(radians(b - axis.ahead));
 
 /** What a coordinate of an axis is called, for people. */
 function told(axis, v) {
@@ -121,17 +125,17 @@ function axisTicks(axis, lo, hi, pixels) {
     return axis.label === "ping" ? found.filter(([v]) => Number.isInteger(v)) : found;
   }
   const wanted = Math.max(3, pixels / 26);
-  const place = axis.kind === "cosine" ? (d) => Math.cos(radians(d))
+  const place = axis.kind === "cosine" ? (d) => -Math.cos(radians(d))
               : axis.kind === "sine" ? (d) => axis.upwards * Math.sin(radians(d)) : (d) => d;
   const name = axis.kind === "cosine"
-    ? (d) => `${text(turned(axis.bearing + axis.side * d), 4).replace(/\.0+$/, "")}°`
+    ? (d) => `${text(turned(axis.ahead + d), 4).replace(/\.0+$/, "")}°`
     : axis.kind === "sine" ? (d) => (d > 0 ? "+" : "") + String(d).replace("-", "−") + "°"
     : (d) => `${d}°`;
   const [first, last] = axis.kind === "cosine" ? [0, 180] : axis.kind === "sine" ? [-90, 90] : [0, 360];
   for (const step of [0.5, 1, 2, 5, 10, 15, 30, 45, 90]) {
     const found = [];
     // true bearings of a line are round numbers, whatever its own bearing is
-    const shift = axis.kind === "cosine" ? turned(-axis.side * axis.bearing) % step : 0;
+    const shift = axis.kind === "cosine" ? turned(-axis.ahead) % step : 0;
     for (let d = first + shift; d <= last + 1e-9; d += step) {
       const v = place(d);
       if (v >= lo - 1e-9 && v <= hi + 1e-9) found.push([v, name(Math.round(d * 1000) / 1000)]);
@@ -473,7 +477,7 @@ class TimeImage extends Panel {
     this.section.hidden = !spec;
     if (!spec) return;
     this.cells = cellsOf(spec);
-    this.flip = (spec.axis.kind === "cosine" && spec.axis.side > 0) || spec.axis.label === "ping";
+    this.flip = spec.axis.label === "ping";
     this.section.querySelector(".about").textContent = spec.about +
       (spec.joined ? ` Each cell is the largest of ${spec.joined}.` : "");
     const whole = [spec.y[0], spec.y[spec.y.length - 1]];
@@ -638,12 +642,21 @@ class Lines extends Panel {
     key.textContent = "";
     for (const line of spec.lines) {
       const one = document.createElement("span"), sample = document.createElement("i");
-      sample.style.borderTop = `2px ${line.dashed ? "dashed" : "solid"} ${this.colour(line)}`;
       one.append(sample, line.name);
       key.append(one);
     }
+    this.paintKey();
   }
-  colour(line) { return line.colour === "ink" ? "var(--ink)" : line.colour; }
+  colour(line) {
+    return line.colour === "ink" ? css("--ink") : typeof line.colour === "number" ? targetColour(line.colour)
+         : themed()[line.colour];
+  }
+  paintKey() {
+    this.section.querySelectorAll(".key i").forEach((sample, i) => {
+      const line = this.spec.lines[i];
+      sample.style.borderTop = `2px ${line.dashed ? "dashed" : "solid"} ${this.colour(line)}`;
+    });
+  }
   get yLabel() { return "level / " + this.spec.unit; }
   drawData(c) {
     c.strokeStyle = css("--grid");
@@ -652,7 +665,7 @@ class Lines extends Panel {
     for (const [v] of this.yTicks()) { c.moveTo(this.box.x, this.py(v)); c.lineTo(this.box.x + this.box.w, this.py(v)); }
     c.stroke();
     for (const line of this.spec.lines) {
-      c.strokeStyle = line.colour === "ink" ? css("--ink") : line.colour;
+      c.strokeStyle = this.colour(line);
       c.lineWidth = line.colour === "ink" ? 1 : 2;
       c.setLineDash(line.dashed ? [5, 2] : []);
       c.beginPath();
@@ -909,8 +922,8 @@ class Plan extends Panel {
     for (let k = 0; k < 3600; ++k) {
       const b = k / 10;
       if (spec.axis.kind === "cosine") {
-        found[k] = nearest(spec.angles, Math.cos(radians(b - spec.axis.bearing)));
-        side[k] = spec.sides.length > 1 && Math.sin(radians(b - spec.axis.bearing)) < 0 ? 1 : 0;
+        found[k] = nearest(spec.angles, cosine(spec.axis, b));
+        side[k] = spec.sides.length > 1 && Math.sin(radians(b - spec.axis.ahead)) > 0 ? 1 : 0;
       } else found[k] = nearest(spec.angles.map((a) => Math.abs(((a - b + 540) % 360) - 180)), 0);
     }
     return {found, side};
@@ -1156,6 +1169,8 @@ function resizeAll() { for (const p of panels) if (p.shown) p.resize(); drawAll(
 
 function theme(name) {
   if (name) document.documentElement.dataset.theme = name;
+  document.querySelectorAll("#targets i").forEach((dot, i) => { dot.style.background = targetColour(i); });
+  if (levels && levels.shown) levels.paintKey();
   drawAll();
 }
 
@@ -1173,13 +1188,13 @@ function start() {
   choices("array", arrays.map((a) => [a, D.arrays[a]]), "array");
   $("ping").addEventListener("change", () => choosePing(Number($("ping").value)));
   $("array").addEventListener("change", () => choosePing(view().ping, Number($("array").value)));
-  D.targets.forEach((t, i) => {
+  D.targets.forEach((name, i) => {
     const b = Object.assign(document.createElement("button"), {type: "button"});
     b.dataset.target = i;
     b.setAttribute("aria-pressed", "false");
     const dot = document.createElement("i");
-    dot.style.background = t.colour;
-    b.append(dot, t.name);
+    dot.style.background = targetColour(i);
+    b.append(dot, name);
     b.addEventListener("click", () => chooseTarget(S.target === i ? null : i));
     $("targets").append(b);
   });
@@ -1203,8 +1218,7 @@ function start() {
   show(0);
 
   $("theme").addEventListener("click", () => {
-    const dark = getComputedStyle(document.documentElement).colorScheme.includes("dark");
-    theme(dark ? "light" : "dark");
+    theme(isDark() ? "light" : "dark");
   });
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => theme());
   addEventListener("resize", resizeAll);

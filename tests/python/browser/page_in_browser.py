@@ -172,8 +172,7 @@ class Browser(unittest.TestCase):
             curves = levels.curves(file, row)
         times = self.of("Bearing–time", "p.spec.x")
         for beam, column in ((120, 505), (30, 400), (90, 100)):
-            y = where.coordinate[beam] * self.turn("Bearing–time", where.axis)
-            said = self.move("Bearing–time", 0.5 * (edges[column] + edges[column + 1]), y)
+            said = self.move("Bearing–time", 0.5 * (edges[column] + edges[column + 1]), where.coordinate[beam])
             found = self.js("return S.time")
             k = int((found - times["first"]) / times["step"])
             self.assertLess(abs(found - edges[column]), 0.2)
@@ -192,11 +191,6 @@ class Browser(unittest.TestCase):
         time, total = curves["measured"]
         expected = total[int(round((at - time[0]) / np.median(np.diff(time))))]
         self.assertIn(f"measured, all frequencies: {expected:.1f} dB re 1 µPa", said)
-
-    def turn(self, name, axis):
-        """−1 where the page counts a line from its other end."""
-        bearing = np.degrees(np.arctan2(axis[0], axis[1]))
-        return 1 if np.cos(np.radians(bearing - self.of(name, "p.spec.axis.bearing"))) > 0 else -1
 
     def test_range_and_bearing_of_the_target(self):
         self.open("deep")

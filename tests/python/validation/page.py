@@ -157,13 +157,13 @@ class Page(unittest.TestCase):
                              ["Bearing–time", "Detections", "Doppler–time", "Spectrogram"])
             self.assertIsNotNone(view["map"])
             self.assertIsNotNone(view["levels"])
-        self.assertEqual([t["name"] for t in self.data["targets"]], ["rock", "reef"])
+        self.assertEqual(self.data["targets"], ["rock", "reef"])
         lines = SCENARIO.splitlines()
         self.assertEqual([lines[first + 1] for first, _ in self.data["tables"]],
                          ['name = "rock"', 'name = "reef"'])
         self.assertEqual([lines[end] for _, end in self.data["tables"]], ["[[target]]", "[noise]"])
         self.assertEqual(self.data["history"]["cells"]["rows"], 2)
-        self.assertTrue(any("samples are not here" in note for note in self.data["notes"]))
+        self.assertTrue(any("samples of each phone are not here" in note for note in self.data["notes"]))
 
     def test_cells_are_those_of_the_pictures(self):
         """To half a step of 0.01 dB."""
@@ -175,7 +175,8 @@ class Page(unittest.TestCase):
         self.assertGreater(np.abs(values(self.image("Detections", 1)["cells"]) - m.beam_db).max(), 1.0)
         curves = levels.curves(self.file, 0)
         for line in self.data["views"][0]["levels"]["lines"]:
-            key = {"measured, all frequencies": "measured"}.get(line["name"], line["name"])
+            key = {"measured, all frequencies": "measured", "echo, all 2 targets": "echo"}.get(
+                line["name"], line["name"])
             time, db = curves[key if key in curves else "in band"]
             np.testing.assert_allclose(np.array(line["y"], float), db, atol=0.0051)
             self.assertAlmostEqual(line["first"], time[0], 6)
@@ -201,9 +202,8 @@ class Page(unittest.TestCase):
         for name in ("Bearing–time", "Detections"):
             panel = self.image(name)
             for mark, place in zip(panel["marks"], [(2000.0, 1500.0), (1500.0, -900.0)]):
-                off = np.degrees(np.arccos(np.clip(mark["y"][0], -1.0, 1.0)))
-                axis = panel["axis"]
-                both = [(axis["bearing"] + side * off) % 360.0 for side in (1, -1)]
+                off = np.degrees(np.arccos(np.clip(-mark["y"][0], -1.0, 1.0)))
+                both = [(panel["axis"]["ahead"] + side * off) % 360.0 for side in (1, -1)]
                 true = np.degrees(np.arctan2(*place)) % 360.0
                 # the sound comes a little from below, which draws it towards broadside
                 self.assertLess(min(abs(b - true) for b in both), 2.0, (name, both, true))
