@@ -222,10 +222,14 @@ def view(data, row: int, array: int) -> dict:
     found["images"] += detection_images(data, row, found)
     found["images"].append(spectrogram_image(data, row))
     found["levels"] = level_lines(data, row, found)
-    if reason := range_bearing.nothing_to_show(data, row):
-        found["left_out"].append(f"Range and bearing: {reason}.")
-    else:
+    reason = range_bearing.nothing_to_show(data, row)
+    if not reason:
         found["map"] = map_panel(data, row)
+    elif processed.there(data):
+        found["left_out"].append(f"Range and bearing: {reason}.")
+        if processed.tracks(data):
+            found["left_out"].append("Tracks: they are drawn on the map alone. The pictures of asdic plot "
+                                     "draw them over range.")
     return found
 
 

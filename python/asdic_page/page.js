@@ -479,7 +479,7 @@ class TimeImage extends Panel {
     this.cells = cellsOf(spec);
     this.flip = spec.axis.label === "ping";
     this.section.querySelector(".about").textContent = spec.about +
-      (spec.joined ? ` Each cell is the largest of ${spec.joined}.` : "");
+      (spec.joined ? ` Each cell is the largest of ${spec.joined} (up × along).` : "");
     const whole = [spec.y[0], spec.y[spec.y.length - 1]];
     if (spec.axis.kind === "cosine" || spec.axis.kind === "sine") { whole[0] = Math.max(whole[0], -1); whole[1] = Math.min(whole[1], 1); }
     this.y = {lo: whole[0], hi: whole[1], full: whole};
@@ -531,22 +531,19 @@ class TimeImage extends Panel {
     const long = view().duration;
     for (const m of this.spec.marks) {
       c.globalAlpha = faded(m.target) ? 0.25 : 1;
-      const width = S.target === m.target ? 3.2 : 2, colour = targetColour(m.target);
-      for (let i = 0; i < m.x.length; ++i) {
-        const x = this.px(m.x[i]), y = this.py(m.y[i]);
-        stroke(c, colour, width, () => {
-          if (m.look === "bar") {
-            const end = this.px(m.x[i] + long);
-            c.moveTo(x, y - 6); c.lineTo(x, y + 6); c.moveTo(x, y); c.lineTo(end, y);
-            c.moveTo(end, y - 6); c.lineTo(end, y + 6);
-          } else if (m.look === "stroke") {
-            const half = Math.max(3, 0.38 * Math.abs(this.py(1) - this.py(0)));
-            c.moveTo(x, y - half); c.lineTo(x, y + half);
-          } else {
-            c.moveTo(x - 5, y - 5); c.lineTo(x + 5, y + 5); c.moveTo(x - 5, y + 5); c.lineTo(x + 5, y - 5);
-          }
-        });
-      }
+      stroke(c, targetColour(m.target), S.target === m.target ? 3.2 : 2, () => m.x.forEach((t, i) => {
+        const x = this.px(t), y = this.py(m.y[i]);
+        if (m.look === "bar") {
+          const end = this.px(t + long);
+          c.moveTo(x, y - 6); c.lineTo(x, y + 6); c.moveTo(x, y); c.lineTo(end, y);
+          c.moveTo(end, y - 6); c.lineTo(end, y + 6);
+        } else if (m.look === "stroke") {
+          const half = Math.max(3, 0.38 * Math.abs(this.py(1) - this.py(0)));
+          c.moveTo(x, y - half); c.lineTo(x, y + half);
+        } else {
+          c.moveTo(x - 5, y - 5); c.lineTo(x + 5, y + 5); c.moveTo(x - 5, y + 5); c.lineTo(x + 5, y - 5);
+        }
+      }));
     }
     c.globalAlpha = 1;
     const found = view().detections;
