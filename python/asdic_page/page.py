@@ -12,6 +12,7 @@ from asdic_pictures.data import InputError, PingFile
 from .content import content
 
 HERE = Path(__file__).resolve().parent
+SCRIPTS = ("state", "words", "cells", "axes", "panel", "image", "levels", "rays", "plan", "chosen", "page")
 MARK = '<meta name="generator" content="asdic'     # pages of ours have it near their beginning
 # The browser refuses whatever the page might ask a network for.
 POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"
@@ -75,7 +76,8 @@ def text(data: PingFile, ping: int | None = None, array: str | None = None) -> s
     return PAGE.format(mark=MARK, version=" " + html.escape(page["version"]), policy=POLICY,
                        title=html.escape(page["title"]) + " · asdic", data=encoded(page),
                        css=(HERE / "page.css").read_text(encoding="utf-8"),
-                       script=(HERE / "page.js").read_text(encoding="utf-8"))
+                       script="\n".join((HERE / "script" / f"{name}.js").read_text(encoding="utf-8")
+                                        for name in SCRIPTS))
 
 
 def is_ours(path: Path) -> bool:

@@ -222,6 +222,21 @@ class Page(unittest.TestCase):
         for time in times:
             self.assertLess(np.abs(delays - time).min(), 1e-3)
 
+    def test_from_python(self):
+        """A dataset of asdic.open makes the page that the program makes of the file."""
+        package = Path(os.environ.get("ASDIC_BUILD", ROOT / "build" / "release")) / "python"
+        if not any((package / "asdic").glob("_core*.so")):
+            self.skipTest("no Python package was built")
+        code = "import asdic; asdic.page(asdic.open('sea.h5'), 'python.html', ping=2)"
+        subprocess.run([sys.executable, "-c", code], cwd=self.folder, check=True,
+                       env=os.environ | {"PYTHONPATH": str(package)})
+        made = data_of(self.folder / "python.html")
+        self.assertEqual(made["views"], self.data["views"][1:])
+
+    def test_every_script_is_in_it(self):
+        files = {path.stem for path in (ROOT / "python" / "asdic_page" / "script").glob("*.js")}
+        self.assertEqual(files, set(page.SCRIPTS))
+
     def test_never_over_what_is_not_ours(self):
         path = self.folder / "notes.html"
         path.write_text("<html>mine</html>")
