@@ -83,12 +83,14 @@ def _read(path: str, load: bool):
     whole = made.load() if load else made
     variables = dict(whole.variables)
     attrs = dict(whole.attrs)
+    sizes = dict(whole.sizes)
     for name in groups:
         part = xr.open_dataset(path, engine="h5netcdf", group=name, decode_times=False,
                                phony_dims="access")
         part = part.load() if load else part
         own = {dim: f"{name}/{dim}" for dim in part.dims
-               if dim in whole.dims and part.sizes[dim] != whole.sizes[dim]}
+               if part.sizes[dim] != sizes.get(dim, part.sizes[dim])}
+        sizes = dict(part.sizes) | sizes
         for key, value in part.variables.items():
             dims = tuple(own.get(dim, dim) for dim in value.dims)
             variables[f"{name}/{key}"] = xr.Variable(dims, value._data, value.attrs)

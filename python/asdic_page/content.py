@@ -1,7 +1,7 @@
 """What the page of a ping file shows, as numbers that go into JSON.
 
-Images are those of the pictures: the same functions compute them. Where there is too much for a page,
-cells are joined, and each tells the largest value of those it is made of.
+Images are those of the pictures: the same functions compute them. Where there is too much for a
+page, cells are joined, and each tells the largest value of those it is made of.
 """
 from __future__ import annotations
 
@@ -26,7 +26,8 @@ def content(data, ping: int | None = None, array: str | None = None) -> dict:
     """
     views, notes = chosen(data, ping, array)
     first = views[0]
-    page = {"title": data.title or data.path.rsplit("/", 1)[-1], "file": data.path.rsplit("/", 1)[-1],
+    name = data.path.rsplit("/", 1)[-1]
+    page = {"title": data.title or name, "file": name,
             "version": data._text(data.file.attrs, "program_version") or "",
             "scenario": scenario(data), "targets": [], "notes": notes,
             "arrays": data.array_names, "processed": processed.there(data),
@@ -42,8 +43,8 @@ def content(data, ping: int | None = None, array: str | None = None) -> dict:
     page["history"] = history(data, page["notes"])
     page["tracks"] = tracks(data, {number for _, number in views})
     page["notes"] += joined(page)
-    page["notes"].append(f"The {data.samples // data._finer} samples of each phone are not here. What is shown "
-                         "are the numbers of the pictures of asdic plot.")
+    page["notes"].append(f"The {data.samples // data._finer} samples of each phone are not here. "
+                         "What is shown are the numbers of the pictures of asdic plot.")
     page["notes"] += data.warnings()
     return page
 
@@ -174,8 +175,8 @@ def joined(page) -> list:
 # ---------------------------------------------------------------- axes
 
 def cosine_axis(axis) -> dict:
-    """Even in the cosine of the angle to a line, whose two sides look alike: labels are of its first
-    side, as in the pictures (bearings.py).
+    """Even in the cosine of the angle to a line, whose two sides look alike: labels are of its
+    first side, as in the pictures (bearings.py).
     """
     return {"kind": "cosine", "ahead": number(bearings.ahead(axis) % 360.0, 9),
             "label": f"{bearings.TRUE} ({bearings.side(axis, False)} side)"}
@@ -228,17 +229,19 @@ def view(data, row: int, array: int) -> dict:
     elif processed.there(data):
         found["left_out"].append(f"Range and bearing: {reason}.")
         if processed.tracks(data):
-            found["left_out"].append("Tracks: they are drawn on the map alone. The pictures of asdic plot "
-                                     "draw them over range.")
+            found["left_out"].append("Tracks: they are drawn on the map alone. The pictures of "
+                                     "asdic plot draw them over range.")
     return found
 
 
 def about(data, row) -> list:
     """[what, text] of the ping"""
-    told = [["pulse", f"{data.pulse_kind} of {data.pulse_duration:g} s at {data.centre_frequency:g} Hz"
+    lasts = data.valid_samples[row] / data.sample_rate
+    told = [["pulse", f"{data.pulse_kind} of {data.pulse_duration:g} s at "
+             f"{data.centre_frequency:g} Hz"
              + (f", {data.bandwidth:.0f} Hz wide" if data.pulse_sweep else "")],
             ["array", f"{data.channels} phone{'s' * (data.channels != 1)}"],
-            ["record", f"{data.valid_samples[row] / data.sample_rate:g} s at {data.stored_rate:g} Hz"
+            ["record", f"{lasts:g} s at {data.stored_rate:g} Hz"
              + (", complex baseband" if data.complex else "")]]
     time = float(data.read("ping_time", row))
     if time > 0:
@@ -307,8 +310,8 @@ def detection_images(data, row, found) -> list:
                         "power over the background", "dB", limits)
         doppler |= {"name": "Doppler–time",
                     "found": numbers(data.centre_frequency * (t["doppler_factor"] - 1.0), 7),
-                    "about": "Power over the background in every Doppler filter, the largest of all "
-                             "beams. Circles: found. Crosses: true echoes."}
+                    "about": "Power over the background in every Doppler filter, the largest of "
+                             "all beams. Circles: found. Crosses: true echoes."}
         made.append(doppler)
     for panel in made:
         for e in data.echoes(row):
@@ -339,7 +342,8 @@ def spectrogram_image(data, row) -> dict:
     tone = speeds(data, row) if data.pulse_sweep == 0 else {}
     made = image(db, style.cell_edges(time), style.cell_edges(frequency - data.centre_frequency),
                  linear_axis(f"frequency above {data.centre_frequency:g} Hz", "Hz", **tone),
-                 "spectral level", "dB re 1 µPa²/Hz", spectrogram.colour_limits(data, row, db, window))
+                 "spectral level", "dB re 1 µPa²/Hz",
+                 spectrogram.colour_limits(data, row, db, window))
     phones = "1 phone" if data.channels == 1 else f"mean over {data.channels} phones"
     made |= {"name": "Spectrogram", "about": f"{phones[0].upper()}{phones[1:]}, windows of "
              f"{window:.3g} s. Bars: true echoes."}
@@ -392,9 +396,10 @@ def map_panel(data, row) -> dict:
     if m.beam_range:
         farthest = max(np.nanmax(span) for span in m.beam_range)
         ranges = np.linspace(0.0, farthest, 400)
+        times = np.broadcast_to(m.time, m.beam_db.shape)
         for span in m.beam_range:
-            power, time = (np.array([range_bearing.on_ranges(s, v, ranges) for s, v in zip(span, held)])
-                           for held in (m.beam_db, np.broadcast_to(m.time, m.beam_db.shape)))
+            power, time = (np.array([range_bearing.on_ranges(s, v, ranges)
+                                     for s, v in zip(span, held)]) for held in (m.beam_db, times))
             sides.append({"ranges": numbers(ranges), "cells": packed(power),
                           "times": packed(time, 1e-3)})
     else:
@@ -407,9 +412,10 @@ def map_panel(data, row) -> dict:
     return {"name": "Range and bearing", "axis": map_axis(m), "angles": numbers(m.angle, 8),
             "sides": sides, "centre": numbers(centre, 8), "targets": targets,
             "sender": numbers(sender) if np.hypot(*sender[:2]) > 1.0 else None,
-            "unit": "dB", "what": "power over the background", "limits": processed.limits(data, row, m),
-            "about": "By the sound paths, north up. Circles: found. Stars: where targets are at the "
-                     "ping." + (" The array cannot tell left from right: both sides are drawn."
+            "unit": "dB", "what": "power over the background",
+            "limits": processed.limits(data, row, m),
+            "about": "By the sound paths, north up. Circles: found. Stars: where targets are at "
+                     "the ping." + (" The array cannot tell left from right: both sides are drawn."
                                 if m.kind == "line" else "")}
 
 
@@ -491,15 +497,16 @@ def ray_panel(data):
         lines.append(line)
     centre = data.phones(row).mean(axis=0)
     apart = float(np.linalg.norm(centre - platform))
-    found = {"name": "Rays", "lines": lines, "hits": numbers(hits[(hits >= 0) & (hits <= 1.1 * reach)]),
+    hits = hits[(hits >= 0) & (hits <= 1.1 * reach)]
+    found = {"name": "Rays", "lines": lines, "hits": numbers(hits),
              "platform": number(platform[2]), "ping": int(data.numbers[row]),
              "there_and_back": bool(time is not None and apart < 100.0),
              "profile": {"depth": numbers(depth[water]), "speed": numbers(speed[water], 7)},
              "bottom": number(data.bottom_depth), "floor": None, "surface": None,
              "targets": [{"target": i, "r": number(np.hypot(*(p - platform)[:2])),
                           "z": number(p[2]), "there": there} for i, _, p, there in targets],
-             "about": f"The beam at {data.elevation_deg[row]:+g}° and the eigenrays to targets, first "
-                      f"ping{rays.in_one_plane(platform, targets)}."
+             "about": f"The beam at {data.elevation_deg[row]:+g}° and the eigenrays to targets, "
+                      f"first ping{rays.in_one_plane(platform, targets)}."
                       + (" Dots: where what is received at the chosen time was struck." if time
                          is not None and apart < 100.0 else "")}
     for side, name in (("bottom", "floor"), ("surface", "surface")):
@@ -523,13 +530,13 @@ def history(data, notes: list):
     loudest = max(data.loudest_echo(int(row)) for row in rows)
     made = image(db, edges, sweep.row_edges(pings), linear_axis("ping", ""),
                  f"level in {width:.0f} Hz", "dB re 1 µPa", style.colour_limits(db, loudest))
-    made |= {"name": "Pings", "about": "Level of every ping. Strokes: the strongest true echo of each "
-                                       "target. A click chooses the ping."}
+    made |= {"name": "Pings", "about": "Level of every ping. Strokes: the strongest true echo of "
+                                       "each target. A click chooses the ping."}
     strokes: dict = {}
     for row in rows:
         for e in data.echoes(int(row)):
-            mark = strokes.setdefault(int(e.target), {"target": int(e.target), "look": "stroke", "x": [], "y": [],
-                                                 "level": []})
+            mark = strokes.setdefault(int(e.target), {"target": int(e.target), "look": "stroke",
+                                                      "x": [], "y": [], "level": []})
             mark["x"].append(number(e.delay[e.strongest], 8))
             mark["y"].append(int(data.numbers[row]))
             mark["level"].append(number(e.level_db[e.strongest], 5))

@@ -12,7 +12,8 @@ from asdic_pictures.data import InputError, PingFile
 from .content import content
 
 HERE = Path(__file__).resolve().parent
-SCRIPTS = ("state", "words", "cells", "axes", "panel", "image", "levels", "rays", "plan", "chosen", "page")
+SCRIPTS = ("state", "words", "cells", "axes", "panel", "image", "levels", "rays", "plan", "chosen",
+           "page")     # in this order
 MARK = '<meta name="generator" content="asdic'     # pages of ours have it near their beginning
 # The browser refuses whatever the page might ask a network for.
 POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"
@@ -44,14 +45,17 @@ PAGE = """<!DOCTYPE html>
 <div id="space"></div>
 <div id="words">
 <section class="card"><h2>This ping</h2><dl id="about"></dl><ul id="warnings"></ul>
-<p class="keys">Wheel or drag: zoom. Shift and drag: move. Double click: all of it. A click holds the time or chooses
-what is under it. Keys: <kbd>Tab</kbd> to a panel, arrows, <kbd>+</kbd> <kbd>−</kbd> <kbd>0</kbd>, <kbd>Enter</kbd>;
-<kbd>t</kbd> next target, <kbd>[</kbd> <kbd>]</kbd> pings, <kbd>Esc</kbd> lets go.</p></section>
-<details class="card" id="found" open><summary>Detections</summary><div class="scroll"><table><thead><tr><th>time / s</th>
-<th>SNR / dB</th><th>bearing, true</th><th>range / km</th><th>Doppler / Hz</th><th>what it is</th></tr></thead>
+<p class="keys">Wheel or drag: zoom. Shift and drag: move. Double click: all of it. A click holds
+the time or chooses what is under it. Keys: <kbd>Tab</kbd> to a panel, arrows, <kbd>+</kbd>
+<kbd>−</kbd> <kbd>0</kbd>, <kbd>Enter</kbd>; <kbd>t</kbd> next target,
+<kbd>[</kbd> <kbd>]</kbd> pings, <kbd>Esc</kbd> lets go.</p></section>
+<details class="card" id="found" open><summary>Detections</summary><div class="scroll"><table>
+<thead><tr><th>time / s</th><th>SNR / dB</th><th>bearing, true</th><th>range / km</th>
+<th>Doppler / Hz</th><th>what it is</th></tr></thead>
 <tbody></tbody></table></div></details>
 <section class="card"><h2>Scenario</h2><pre id="scenario" tabindex="0"></pre></section>
-<details class="card" open><summary>What is shown, and what not</summary><ul id="notes"></ul></details>
+<details class="card" open><summary>What is shown, and what not</summary><ul id="notes"></ul>
+</details>
 </div>
 </div>
 </main>

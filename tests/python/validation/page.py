@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The page of `asdic plot --html`: one file that asks no network, and holds what the ping file holds.
+"""The page of `asdic plot --html`: one file that asks no network and holds what the ping file does.
 
     ASDIC=build/ci/bin/asdic page.py
 
@@ -129,19 +129,20 @@ class Page(unittest.TestCase):
 
     def test_one_file_that_asks_no_network(self):
         self.assertEqual(self.said, "sea.html: a page for a browser\n")
-        self.assertEqual([tag for tag, _ in self.parts.tags if tag in ("script", "style", "img", "iframe",
-                                                                      "object", "embed", "base")],
+        active = ("script", "style", "img", "iframe", "object", "embed", "base")
+        self.assertEqual([tag for tag, _ in self.parts.tags if tag in active],
                          ["style", "script", "script"])
         for tag, attributes in self.parts.tags:
             for name in ("src", "href", "action", "srcset", "data", "poster"):
                 self.assertIn(attributes.get(name, "data:,"), ["data:,"], tag)
-        policy = [a["content"] for t, a in self.parts.tags if a.get("http-equiv") == "Content-Security-Policy"]
+        policy = [attributes["content"] for _, attributes in self.parts.tags
+                  if attributes.get("http-equiv") == "Content-Security-Policy"]
         self.assertEqual([p.split(";")[0] for p in policy], ["default-src 'none'"])
         text = self.path.read_text()
         written_by_us = text.replace(self.parts.texts["script", "data"], "")
         self.assertIn("https://", text)      # the scenario's own words stay what they are
-        for word in ("http:", "https:", "//www", "@import", "url(", "fetch(", "XMLHttpRequest", "import(",
-                     "WebSocket", "sendBeacon"):
+        for word in ("http:", "https:", "//www", "@import", "url(", "fetch(", "XMLHttpRequest",
+                     "import(", "WebSocket", "sendBeacon"):
             self.assertNotIn(word, written_by_us)
 
     def test_a_scenario_cannot_break_out_of_its_place(self):
@@ -163,7 +164,7 @@ class Page(unittest.TestCase):
                          ['name = "rock"', 'name = "reef"'])
         self.assertEqual([lines[end] for _, end in self.data["tables"]], ["[[target]]", "[noise]"])
         self.assertEqual(self.data["history"]["cells"]["rows"], 2)
-        self.assertTrue(any("samples of each phone are not here" in note for note in self.data["notes"]))
+        self.assertIn("samples of each phone are not here", " ".join(self.data["notes"]))
 
     def test_cells_are_those_of_the_pictures(self):
         """To half a step of 0.01 dB."""
@@ -172,7 +173,8 @@ class Page(unittest.TestCase):
                                ("Spectrogram", spectrogram.record(self.file, 0)[2]),
                                ("Detections", m.beam_db), ("Doppler–time", m.doppler_db)):
             np.testing.assert_allclose(values(self.image(name)["cells"]), expected, atol=0.0051)
-        self.assertGreater(np.abs(values(self.image("Detections", 1)["cells"]) - m.beam_db).max(), 1.0)
+        other = values(self.image("Detections", 1)["cells"])
+        self.assertGreater(np.abs(other - m.beam_db).max(), 1.0)
         curves = levels.curves(self.file, 0)
         for line in self.data["views"][0]["levels"]["lines"]:
             key = {"measured, all frequencies": "measured", "echo, all 2 targets": "echo"}.get(
@@ -189,11 +191,13 @@ class Page(unittest.TestCase):
                 rows = echoes["ping"][()] == view["ping"]
                 delay, level = echoes["delay"][()][rows], echoes["level_db"][()][rows]
                 target = echoes["target"][()][rows]
-                loud = [t for t, v, i in zip(delay, level, target) if v >= level[target == i].max() - 20.0]
+                loud = [t for t, v, i in zip(delay, level, target)
+                        if v >= level[target == i].max() - 20.0]
                 np.testing.assert_allclose(told, sorted(loud), rtol=1e-7)
                 mine = found["ping"][()] == view["ping"]
                 self.assertGreater(mine.sum(), 0)
-                np.testing.assert_allclose(view["detections"]["time"], found["time"][()][mine], rtol=1e-7)
+                np.testing.assert_allclose(view["detections"]["time"], found["time"][()][mine],
+                                           rtol=1e-7)
                 np.testing.assert_allclose(np.array(view["detections"]["bearing_deg"], float),
                                            found["bearing_deg"][()][mine], rtol=1e-6)
 
@@ -240,8 +244,10 @@ class Page(unittest.TestCase):
     def test_never_over_what_is_not_ours(self):
         path = self.folder / "notes.html"
         path.write_text("<html>mine</html>")
-        run = lambda *more: subprocess.run([os.environ["ASDIC"], "plot", "--html", "sea.h5", "--ping", "2",  # noqa: E731
-                                            "-o", *more], cwd=self.folder, capture_output=True, text=True)
+
+        def run(*more):
+            words = [os.environ["ASDIC"], "plot", "--html", "sea.h5", "--ping", "2", "-o", *more]
+            return subprocess.run(words, cwd=self.folder, capture_output=True, text=True)
         refused = run("notes.html")
         self.assertEqual(refused.returncode, 2)
         self.assertIn("a file that asdic did not write", refused.stderr)
@@ -277,7 +283,8 @@ class Numbers(unittest.TestCase):
         y = np.sin(9.0 * x) ** 3
         kept = content.needed(x, y, 2e-3)
         self.assertLess(len(kept), 100)
-        self.assertLess(np.abs(np.interp(x, x[kept], y[kept]) - y).max(), 2e-2)   # steep: off along y
+        # where it is steep, it is further off along y
+        self.assertLess(np.abs(np.interp(x, x[kept], y[kept]) - y).max(), 2e-2)
         fewer = kept[::2]
         self.assertGreater(np.abs(np.interp(x, x[fewer], y[fewer]) - y).max(), 2e-2)
 
