@@ -120,7 +120,7 @@ def write(data: PingFile, path, ping: int | None = None, array: str | None = Non
         os.replace(part, path)
         part = None
     except OSError as error:
-        error.filename = error.filename or str(path)
+        error.filename = str(path)
         raise
     finally:
         if part is not None:

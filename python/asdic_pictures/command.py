@@ -229,6 +229,9 @@ def draw_scene(options, wish: Wishes) -> None:
 def write_page(options) -> None:
     from asdic_page import page
 
+    for name in ("format", "dpi", "theme", "only", "limits"):
+        if getattr(options, name):
+            raise InputError(f"--{name}", "--html beside it", "one of the two: a page has them all")
     with PingFile(options.file) as data:
         path = page.write(data, page.place(options.file, options.output), options.ping,
                           options.array, options.force)

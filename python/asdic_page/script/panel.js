@@ -203,8 +203,7 @@ class Panel {
     return this.x === T;
   }
   changed() {
-    if (this.sharesTime) drawAll();
-    else this.draw();
+    for (const p of panels) if (p === this || (this.sharesTime && p.sharesTime)) p.draw();
   }
   limit(axis) {
     const [a, b] = axis.full,

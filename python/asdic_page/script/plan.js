@@ -101,24 +101,53 @@ class Plan extends Panel {
       i = between(e, r);
     return i < 0 ? -1 : r - e[i] < e[i + 1] - r ? i : i + 1;
   }
+  /** Of rings half a pixel apart: first and last column of each side that a pixel there covers. */
+  rings(side, metres, count) {
+    const e = side.ranges,
+      first = new Int32Array(count).fill(-1),
+      last = new Int32Array(count);
+    for (let k = 0; k < count; ++k) {
+      const r = 0.5 * k * metres;
+      if (r < e[0] || r > e[e.length - 1]) continue;
+      first[k] = this.column(side, Math.max(r - 0.5 * metres, e[0]));
+      last[k] = this.column(side, Math.min(r + 0.5 * metres, e[e.length - 1]));
+      if (last[k] > first[k]) ++first[k]; // the one below belongs to the pixel before
+    }
+    return {first, last, cells: cellsOf(side)};
+  }
+  /** The largest of the cells of a beam that a pixel covers: no narrow echo falls between pixels. */
   drawData(c) {
     const b = this.box,
-      w = Math.round(b.w * this.scale),
-      h = Math.round(b.h * this.scale);
+      w = Math.round(b.w),
+      h = Math.round(b.h),
+      metres = (this.x.hi - this.x.lo) / w,
+      count = Math.ceil((2 * this.far) / metres) + 3;
     const picture = new ImageData(w, h),
-      pixels = new Uint32Array(picture.data.buffer);
+      pixels = new Uint32Array(picture.data.buffer),
+      {found, side} = this.angleRow,
+      rings = this.spec.sides.map((one) => this.rings(one, metres, count));
     for (let j = 0; j < h; ++j) {
       const y = this.y.hi - ((this.y.hi - this.y.lo) * (j + 0.5)) / h;
       for (let i = 0; i < w; ++i) {
-        const x = this.x.lo + ((this.x.hi - this.x.lo) * (i + 0.5)) / w;
-        const {side, row, column} = this.cell(x, y);
-        if (column < 0) continue;
-        const cells = cellsOf(side),
-          n = cells.whole(row, column);
-        if (n !== 65535) pixels[j * w + i] = colourOf(cells.low + n * cells.step, this.spec.limits);
+        const x = this.x.lo + (i + 0.5) * metres,
+          ring = Math.round((2 * Math.sqrt(x * x + y * y)) / metres);
+        if (ring >= count) continue;
+        const tenth = Math.floor(turned(degrees(Math.atan2(x, y))) * 10 + 0.5) % 3600,
+          {first, last, cells} = rings[side[tenth]];
+        if (first[ring] < 0) continue;
+        let most = -1;
+        for (let k = first[ring], row = found[tenth] * cells.columns; k <= last[ring]; ++k) {
+          const n = cells.values[row + k];
+          if (n !== 65535 && n > most) most = n;
+        }
+        if (most >= 0)
+          pixels[j * w + i] = colourOf(cells.low + most * cells.step, this.spec.limits);
       }
     }
-    c.putImageData(picture, Math.round(b.x * this.scale), Math.round(b.y * this.scale));
+    const drawn = Object.assign(document.createElement("canvas"), {width: w, height: h});
+    drawn.getContext("2d").putImageData(picture, 0, 0);
+    c.imageSmoothingEnabled = false;
+    c.drawImage(drawn, b.x, b.y, b.w, b.h);
     c.strokeStyle = css("--rim") + "70";
     c.lineWidth = 1;
     for (const [r] of ticks(0, this.far, 4)) {

@@ -166,6 +166,21 @@ class Browser(unittest.TestCase):
             inside = image[int(top): int(top + high), int(left): int(left + wide), :3]
             self.assertGreater(inside.std(), 4.0, name)
 
+    def test_no_peak_falls_between_pixels(self):
+        """Drawn small, a panel still shows the colour of its largest value."""
+        self.open("deep", wide=500)
+        for name, cells in (("Doppler–time", "cellsOf(p.spec)"), ("Detections", "cellsOf(p.spec)"),
+                            ("Range and bearing", "cellsOf(p.spec.sides[0])")):
+            colour = self.js(PANEL + f"""
+                const c = {cells};
+                let most = 0;
+                for (const n of c.values) if (n !== 65535 && n > most) most = n;
+                const v = colourOf(c.low + most * c.step, p.spec.limits);
+                return [v & 255, (v >> 8) & 255, (v >> 16) & 255];""", name)
+            left, top, wide, high = self.of(name, "[p.box.x, p.box.y, p.box.w, p.box.h]")
+            image = self.pixels(name)[int(top): int(top + high), int(left): int(left + wide), :3]
+            self.assertTrue((image == np.array(colour, np.uint8)).all(axis=-1).any(), (name, colour))
+
     def test_tells_the_values_of_the_file(self):
         self.open("deep")
         with PingFile(self.folder / "deep.h5") as file:
