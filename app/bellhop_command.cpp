@@ -84,7 +84,7 @@ PropagationResult search(const bellhop::Input& input, const BellhopOptions& opti
   constexpr int steps = 100;
   ProgressBar bar("%", steps, !options.quiet);
   const Progress progress = [&](double share) {
-    bar.done(static_cast<int>(std::clamp(share, 0.0, 1.0) * steps));
+    bar.done(std::clamp(share, 0.0, 1.0) * steps);
     return true;
   };
   try {
@@ -146,7 +146,7 @@ void run_case(const BellhopOptions& options, const std::filesystem::path& root, 
   bellhop::Input input = bellhop::read_case(std::filesystem::path(options.root));
   if (options.beams_as_written) fix_fan(input.run_case);
   const double parse = watch.lap();
-  for (const std::string& leak : input.leaks) fmt::print(stderr, "asdic: note: {}\n", leak);
+  for (const std::string& leak : input.leaks) tell("asdic: note: " + leak);
   report.line(input.echo);
   report.notes(input.notes);
   report.line(options.bellhop_emulation ? "traced     as BELLHOP does it, step by step"

@@ -5,8 +5,10 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <span>
 
+#include "app/console.h"
 #include "core/error.h"
 #include "core/text.h"
 
@@ -32,11 +34,19 @@ std::optional<T> whole_text(const std::string& text) {
   return error == std::errc{} && end == last ? std::optional(value) : std::nullopt;
 }
 
-/// "ABOVE 0 TO 0.5".
+/// "above 0 to 0.5".
 std::string limits_of(const Quantity& q) {
-  std::string text = (q.above ? "ABOVE " : "") + to_text(q.low);
-  if (q.high < infinity) text += " TO " + to_text(q.high);
+  std::string text = (q.above ? "above " : "") + to_text(q.low);
+  if (q.high < infinity) text += " to " + to_text(q.high);
   return text;
+}
+
+/// Of CLI11's own rule, whose words are those of a programmer.
+template <class T>
+Check range_check(T low, T high) {
+  CLI::Range range(low, high);
+  range.description(to_text(low) + " to " + to_text(high));
+  return check_of(std::move(range));
 }
 
 }  // namespace
@@ -58,7 +68,7 @@ Check above_zero() {
                                 ? std::string()
                                 : "found " + text + ", expected a number above 0";
                    },
-                   "ABOVE 0"});
+                   "above 0"});
 }
 
 Check not_negative() {
@@ -68,11 +78,11 @@ Check not_negative() {
                                 ? std::string()
                                 : "found " + text + ", expected a number of at least 0";
                    },
-                   "AT LEAST 0"});
+                   "at least 0"});
 }
 
-Check between(double low, double high) { return check_of(CLI::Range(low, high)); }
-Check between(int low, int high) { return check_of(CLI::Range(low, high)); }
+Check between(double low, double high) { return range_check(low, high); }
+Check between(int low, int high) { return range_check(low, high); }
 
 Check whole_number(std::int64_t low, std::int64_t high, const std::string& noun) {
   return check_of({[low, high, noun](const std::string& text) {
@@ -82,7 +92,9 @@ Check whole_number(std::int64_t low, std::int64_t high, const std::string& noun)
                                 : "found " + text + ", expected " + noun + " from " +
                                       std::to_string(low) + " to " + std::to_string(high);
                    },
-                   std::to_string(low) + " TO " + std::to_string(high)});
+                   high == std::numeric_limits<std::int64_t>::max()
+                       ? "at least " + std::to_string(low)
+                       : std::to_string(low) + " to " + std::to_string(high)});
 }
 
 Check number_of(const Quantity& quantity) {
@@ -172,10 +184,70 @@ void Command::runs(Action action) const {
   command_->callback([chosen = chosen_, action = std::move(action)] { *chosen = action; });
 }
 
+namespace {
+
+constexpr const char* help_of_help = "print this text";
+constexpr const char* help_of_version = "print the version, and how the program was built";
+
+/// "a,b" into its parts.
+std::vector<std::string> split(const std::string& text, char mark) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(mark, begin), text.size());
+    parts.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return parts;
+}
+
+OptionDescription described(const CLI::Option& option) {
+  OptionDescription told;
+  for (const std::string& name : option.get_snames()) told.names.push_back('-' + name);
+  for (const std::string& name : option.get_lnames()) told.names.push_back("--" + name);
+  // CLI11 says of a word "N:1 to 1024" and "LEG:{target,array}": what it is called, then its rules
+  const std::string type = option.get_type_name();
+  const std::size_t mark = std::min(type.find(':'), type.size());
+  if (option.get_positional())
+    told.value = option.get_name(true);
+  else if (option.get_items_expected_max() > 0)
+    told.value = type.substr(0, mark);
+  std::string rules = type.substr(std::min(mark + 1, type.size()));
+  if (rules.starts_with('{') && rules.ends_with('}'))
+    told.words = split(rules.substr(1, rules.size() - 2), ',');
+  else
+    told.limits = std::move(rules);
+  for (const CLI::Option* other : option.get_excludes())
+    told.not_with.push_back("--" + other->get_lnames().front());
+  told.fallback = option.get_default_str();
+  told.help = option.get_description();
+  told.group = option.get_group();
+  told.required = option.get_required();
+  told.repeatable = option.get_items_expected_max() > 1;
+  return told;
+}
+
+std::vector<OptionDescription> described_options(const CLI::App& app) {
+  std::vector<OptionDescription> all;
+  for (const CLI::Option* option : app.get_options())
+    if (!option->get_group().empty()) all.push_back(described(*option));
+  // what every command has comes last
+  std::stable_partition(all.begin(), all.end(), [](const OptionDescription& option) {
+    return option.help != help_of_help && option.help != help_of_version;
+  });
+  return all;
+}
+
+void set_common_flags(CLI::App& app, const std::string& version) {
+  app.set_help_flag("-h,--help", help_of_help);
+  app.set_version_flag("--version", version, help_of_version);
+}
+
+}  // namespace
+
 Program::Program(const std::string& name, const std::string& description,
                  const std::string& version)
     : name_(name), version_(version), app_(std::make_unique<CLI::App>(description, name)) {
-  app_->set_version_flag("--version", version_);
+  set_common_flags(*app_, version_);
   app_->require_subcommand(0, 1);
 }
 
@@ -191,12 +263,36 @@ void Program::add(const Known& known) {
   CLI::App* const command = app_->add_subcommand(known.name, known.help);
   // called when its name has been read, before its words are
   command->preparse_callback([this, command, &known](std::size_t) {
-    command->set_version_flag("--version", version_);
+    set_common_flags(*command, version_);
     known.define({command, &chosen_});
   });
 }
 
 void Program::footer(const std::string& text) { app_->footer(text); }
+
+CommandDescription Program::described(const Known& known) const {
+  CLI::App app(known.help, known.name);
+  set_common_flags(app, version_);
+  Action nothing;
+  known.define({&app, &nothing});
+  return {known.name, known.help, app.get_footer(), described_options(app)};
+}
+
+ProgramDescription Program::without_commands() const {
+  return {.name = name_,
+          .help = app_->get_description(),
+          .version = version_,
+          .footer = app_->get_footer(),
+          .options = described_options(*app_),
+          .groups = groups_,
+          .commands = {}};
+}
+
+ProgramDescription Program::description() const {
+  ProgramDescription all = without_commands();
+  for (const Known& known : commands_) all.commands.push_back(described(known));
+  return all;
+}
 
 /// The help of the command that was being parsed: that one helps.
 std::string Program::see_help() const {
@@ -238,15 +334,32 @@ Action Program::parse(int argc, char** argv) {
   });
   for (const Known& command : commands_)
     if (typed == commands_.end() || &command == &*typed) add(command);
+  const Action tell_all = [this] {
+    print(help_text(description(), help_width()));
+    return 0;
+  };
   try {
     app_->parse(argc, argv);
-  } catch (const CLI::Success& help) {  // --help, --version
-    return [this, help] { return app_->exit(help); };
+  } catch (const CLI::CallForHelp&) {
+    const auto chosen = app_->get_subcommands();
+    if (chosen.empty()) return tell_all;
+    return [this, name = chosen.front()->get_name()] {
+      const auto known = std::find_if(commands_.begin(), commands_.end(),
+                                      [&](const Known& one) { return one.name == name; });
+      print(help_text(without_commands(), described(*known), help_width()));
+      return 0;
+    };
+  } catch (const CLI::Success&) {  // --version
+    return [this] {
+      print(version_ + '\n');
+      return 0;
+    };
   } catch (const CLI::ExtrasError&) {
     throw UsageError(complaint_about_extras(argc, argv) + see_help());
   } catch (const CLI::ParseError& error) {
     throw UsageError(error.what() + see_help());
   }
+  if (!chosen_ && !groups_.empty()) return tell_all;
   if (!chosen_) throw UsageError("no command was given" + see_help());
   return chosen_;
 }

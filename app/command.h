@@ -5,8 +5,10 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "app/description.h"
 #include "core/quantity.h"
 
 // The command line as asdic's commands describe it. CLI11 stands behind it in command.cpp alone: it
@@ -120,6 +122,12 @@ class Program {
   void add_command(const std::string& name, const std::string& help,
                    std::function<void(const Command&)> define);
   void footer(const std::string& text);
+  /// What the program shows when nothing is asked of it: every command in one of these groups.
+  /// Without them it complains.
+  void overview(std::vector<CommandGroup> groups) { groups_ = std::move(groups); }
+
+  /// Every command with its options: each is defined for it.
+  [[nodiscard]] ProgramDescription description() const;
 
   /// \return what the chosen command does, or what prints the help or the version \throws
   /// UsageError \throws InputError naming an option whose word is wrong
@@ -135,9 +143,12 @@ class Program {
     std::function<void(const Command&)> define;
   };
   void add(const Known& command);
+  [[nodiscard]] CommandDescription described(const Known& command) const;
+  [[nodiscard]] ProgramDescription without_commands() const;
 
   std::string name_, version_;
   std::vector<Known> commands_;
+  std::vector<CommandGroup> groups_;
   std::unique_ptr<CLI::App> app_;
   Action chosen_;
 };
@@ -162,6 +173,8 @@ void add_merge_command(Program& program);
 void add_recover_command(Program& program);
 void add_serve_command(Program& program);
 void add_settings_command(Program& program);
+/// Tells of the program itself. It outlives the parsing.
+void add_help_command(Program& program);
 
 /// A scenario as the command line names it.
 struct ScenarioChoice {

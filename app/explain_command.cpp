@@ -28,7 +28,7 @@ int explain_case(const ExplainChoice& options) {
       static_cast<std::size_t>(options.threads.value_or(tbb::info::default_concurrency())));
   std::optional<ProgressBar> bar(std::in_place, "%", 100, !options.quiet);
   const auto progress = [&](double share) {
-    bar->done(static_cast<int>(100.0 * share));
+    bar->done(100.0 * share);
     return true;
   };
   try {
@@ -69,10 +69,8 @@ void add_explain_command(Program& program) {
         command.add_flag("-q,--quiet", options->quiet, "no progress on standard error");
         command.footer(
             "The table splits the difference into what BELLHOP's step, number of beams, merging "
-            "of\n"
-            "arrivals and single precision each change alone. A ROOT.shd, .arr or .ray beside the "
-            "case\n"
-            "is compared as well.\n"
+            "of arrivals and single precision each change alone. A ROOT.shd, .arr or .ray beside "
+            "the case is compared as well.\n"
             "Example:  asdic explain cases/munk");
         command.runs([options] { return explain_case(*options); });
       });

@@ -34,7 +34,7 @@ bool is_shade_name(const std::filesystem::path& path) { return path.extension() 
 PropagationResult run_field_of(const PropagationCase& run_case, const FieldOptions& options) {
   ProgressBar bar("%", 100, !options.quiet);
   const Progress progress = [&](double share) {
-    bar.done(static_cast<int>(100.0 * share));
+    bar.done(100.0 * share);
     return true;
   };
   try {

@@ -5,7 +5,6 @@
 #include <array>
 #include <atomic>
 #include <chrono>
-#include <cstdio>
 #include <utility>
 
 #include "app/console.h"
@@ -37,12 +36,6 @@ extern "C" void on_signal(int) {
   on_all(SIG_DFL);  // the second is not ours, whichever it is
 }
 
-/// In place of a progress bar's line, which is drawn anew below.
-void say(const std::string& line) {
-  std::fputs(((stderr_is_terminal() ? "\r\x1b[K" : "") + line + '\n').c_str(), stderr);
-  std::fflush(stderr);
-}
-
 }  // namespace
 
 Interrupt::Interrupt() {
@@ -62,7 +55,7 @@ StopOnInterrupt::StopOnInterrupt(std::string told) : told_(std::move(told)) {
     while (!over.stop_requested() && !signalled)
       over_.wait_for(lock, over, std::chrono::milliseconds(10), [] { return signalled.load(); });
     if (!signalled) return;
-    if (!told_.empty()) say(told_);
+    if (!told_.empty()) app::tell(told_);
     stop_.request_stop();
   });
 }

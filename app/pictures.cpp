@@ -12,6 +12,7 @@
 #include <filesystem>
 
 #include "app/console.h"
+#include "app/shared_files.h"
 #include "core/error.h"
 
 namespace asdic::detail::app {
@@ -21,14 +22,10 @@ namespace fs = std::filesystem;
 
 /// asdic_plot.py beside an installed program, or where the program was built from.
 fs::path find_script() {
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  const fs::path prefix = program.parent_path().parent_path();  // of bin/asdic
-  const fs::path installed = prefix / "share/asdic/python/asdic_plot.py";
-  const fs::path source = fs::path(ASDIC_SOURCE_DIR) / "python/asdic_plot.py";
-  for (const fs::path& script : {installed, source})
-    if (fs::exists(script, error)) return script;
-  throw RunError("plot: found no " + installed.string() + ", expected the pictures' script there");
+  const fs::path script = shared_file("python/asdic_plot.py");
+  if (!script.empty()) return script;
+  throw RunError("plot: found no " + installed_file("python/asdic_plot.py").string() +
+                 ", expected the pictures' script there");
 }
 
 /// Debian's Python has the packages; ASDIC_PYTHON names another.

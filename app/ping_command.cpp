@@ -4,8 +4,11 @@
 
 #include <chrono>
 #include <limits>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <string_view>
 
 #include "app/command.h"
 #include "app/console.h"
@@ -64,6 +67,44 @@ void tell_of_parts(const std::filesystem::path& output) {
   }
 }
 
+/// How far a run is: pings that are done, and the steps of those in hand.
+class PingProgress {
+ public:
+  explicit PingProgress(bool show) : bar_("preparing", show) {}
+
+  void doing(std::string_view what) { bar_.doing(what); }
+  /// From now on pings are counted.
+  void begin(int count) {
+    bar_.count("ping", count);
+    alone_ = count == 1;
+  }
+  void step(int ping, double share, std::string_view what) {
+    const std::lock_guard lock(mutex_);
+    in_hand_[ping] = share;
+    if (alone_) bar_.doing(what);
+    show();
+  }
+  void done(int ping) {
+    const std::lock_guard lock(mutex_);
+    in_hand_.erase(ping);
+    ++done_;
+    show();
+  }
+
+ private:
+  void show() {
+    double in_hand = 0.0;
+    for (const auto& [ping, share] : in_hand_) in_hand += share;
+    bar_.done(done_, in_hand);
+  }
+
+  std::mutex mutex_;
+  std::map<int, double> in_hand_;  // ping: share of its steps
+  int done_ = 0;
+  bool alone_ = false;
+  ProgressBar bar_;
+};
+
 int ping(const PingOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   Scenario scenario = read_scenario(options.scenario.path, overrides(options));
@@ -92,18 +133,23 @@ int ping(const PingOptions& options) {
       throw RunError(before_the_first);
     }
   };
+  std::optional<PingProgress> progress(std::in_place, !options.quiet);
   std::optional<PingSimulator> made;
   call_off([&] {
     made.emplace(std::move(scenario), nullptr,
                  read_budget(options.scenario.path, options.scenario.overrides));
     try {
+      progress->doing("preparing: paths to scatterers");
       static_cast<void>(made->memory());
+      progress->doing("preparing: paths that are followed");
       const std::vector<std::string> missing = made->judge_paths().warnings;
       if (!options.quiet) warn(missing);
     } catch (const MemoryError& error) {
       throw told_of_scenario(error, options.scenario.path, overrides(options));
     }
   });
+  made->tell_steps(
+      [&](int ping, double share, std::string_view what) { progress->step(ping, share, what); });
   const PingSimulator& simulator = *made;
   const int count = simulator.pings();
   PingReport report(simulator.scenario());
@@ -111,10 +157,11 @@ int ping(const PingOptions& options) {
                         options.time_axis ? SampleTimes::written_out : SampleTimes::start_and_step);
   int done = 0;
   try {
+    progress->doing("preparing: rays to draw");
     RayPaths rays;
     call_off([&] { rays = drawn_rays(simulator); });
     writer.write_rays(rays);
-    ProgressBar bar("ping", count, !options.quiet);
+    progress->begin(count);
     run_pings(simulator,
               [&](PingRecord&& record) {
                 const auto start = std::chrono::steady_clock::now();
@@ -122,7 +169,8 @@ int ping(const PingOptions& options) {
                 const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
                 record.timings.write = wall.count();
                 report.add(record);
-                bar.done(++done);
+                ++done;
+                progress->done(record.ping);
               },
               {.stop = interrupt.token()});
   } catch (const RunError& error) {
@@ -130,6 +178,7 @@ int ping(const PingOptions& options) {
     throw RunError(fmt::format("{}; {} holds the {} before", error.what(), part,
                                done == 1 ? "ping" : fmt::format("{} pings", done)));
   }
+  progress.reset();
   writer.finish(done == count);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   if (!options.quiet && done > 0) {

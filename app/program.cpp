@@ -27,8 +27,7 @@ void open_standard_streams() {
 
 void complain(const std::string& program, const std::string& message) {
   std::fflush(stdout);
-  std::fputs((program + ": " + printable_lines(message) + '\n').c_str(), stderr);
-  std::fflush(stderr);
+  tell(program + ": " + printable_lines(message));
 }
 
 int guarded(const std::function<void()>& act, std::string& said) {

@@ -124,7 +124,7 @@ std::vector<std::vector<RayPath>> run_of(const PropagationCase& run_case,
     until_interrupted([&] {
       found = run(run_case, {}, read_budget(options.scenario.path, options.scenario.overrides));
     });
-    for (const std::string& note : found.notes) fmt::print(stderr, "asdic: note: {}\n", note);
+    for (const std::string& note : found.notes) tell("asdic: note: " + note);
     return std::move(found.rays);
   } catch (const Interrupted&) {
     throw RunError("interrupted");

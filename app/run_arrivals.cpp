@@ -50,7 +50,7 @@ RunArrivals find_run_arrivals(const ScenarioChoice& choice,
       all.result = run(
           all.run_case,
           [&](double share) {
-            bar.done(static_cast<int>(100.0 * share));
+            bar.done(100.0 * share);
             return true;
           },
           read_budget(choice.path, overrides));
@@ -60,7 +60,7 @@ RunArrivals find_run_arrivals(const ScenarioChoice& choice,
   } catch (const InputError& error) {
     throw told_of_scenario(error, choice.path, overrides);
   }
-  for (const std::string& note : all.result.notes) fmt::print(stderr, "asdic: note: {}\n", note);
+  for (const std::string& note : all.result.notes) tell("asdic: note: " + note);
   return all;
 }
 

@@ -28,6 +28,7 @@ int study_run(const StudyOptions& options) {
       "at "
       "once");
   order.run.stop = interrupt.token();
+  std::optional<StudyProgress> progress(std::in_place, !options.quiet);
   const study::Realiser realiser(order.study);
   const study::Work work = [&] {
     std::optional<study::Work> made;  // what its levels lack takes a search
@@ -40,12 +41,9 @@ int study_run(const StudyOptions& options) {
     return std::move(*made);
   }();
   if (!options.quiet) warn(work.fingerprint.warnings);
-  study::StudyOutcome outcome;
-  {
-    StudyProgress progress(!options.quiet);
-    order.run.progress = [&](const study::Progress& p) { progress.update(p); };
-    outcome = study::run_study(work, order.run);
-  }
+  order.run.progress = [&](const study::Progress& p) { progress->update(p); };
+  const study::StudyOutcome outcome = study::run_study(work, order.run);
+  progress.reset();
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   return report(order, outcome, options.quiet, wall.count());
 }

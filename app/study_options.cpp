@@ -87,9 +87,7 @@ StudyOrder order_of(const StudyOptions& options) {
   order.run.fresh = options.fresh;
   order.run.force = options.force;
   order.run.retry = options.retry;
-  order.run.note = [](const std::string& text) {
-    std::fputs(("asdic: note: " + text + '\n').c_str(), stderr);
-  };
+  order.run.note = [](const std::string& text) { tell("asdic: note: " + text); };
   order.run.assemble_only = options.assemble;
   order.run.session.made = provenance(order.threads);
   order.run.session.study_path = std::filesystem::absolute(options.path).string();

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "app/console.h"
 
@@ -20,30 +22,33 @@ std::string estimate_text(const study::Estimate& e) {
                      e.low, decimals, e.high, decimals, 100.0 * e.level);
 }
 
-std::string progress_line(const study::Progress& p, double elapsed) {
-  constexpr std::uint64_t width = 30;
+std::string progress_line(const study::Progress& p, double elapsed, std::size_t width) {
   const std::uint64_t made = p.done - std::min(p.before, p.done);
-  const auto filled =
-      static_cast<std::size_t>(p.total > 0 ? width * std::min(p.done, p.total) / p.total : 0);
   const double rate = static_cast<double>(made) / std::max(elapsed, 1e-3);
-  std::string line = fmt::format("[{:<30}] {} of {}, {}", std::string(filled, '#'), p.done,
-                                 count_of(p.total, "realisation"), duration(elapsed));
-  if (made > 0) line += fmt::format(", {:.3g}/s", rate);
+  std::vector<ProgressPart> parts{
+      {fmt::format("{} of {}", p.done, count_of(p.total, "realisation")), 0},
+      {duration(elapsed), 3}};
+  if (made > 0) parts.push_back({fmt::format("{:.3g}/s", rate), 4});
   if (made > 0 && p.done < p.total)
-    line +=
-        fmt::format(", about {} left", duration(std::max(double(p.total - p.done) / rate, 0.1)));
-  if (p.estimate) line += "; " + estimate_text(*p.estimate);
-  return line;
+    parts.push_back(
+        {fmt::format("about {} left", duration(std::max(double(p.total - p.done) / rate, 0.1))),
+         1});
+  if (p.estimate) parts.push_back({estimate_text(*p.estimate), 2});
+  const double share = p.total > 0 ? double(std::min(p.done, p.total)) / double(p.total) : 0.0;
+  return fitted_line(share, std::move(parts), width);
 }
 
 StudyProgress::StudyProgress(bool show)
-    : painter_(show, [this](double elapsed) {
+    : painter_(show, [this](double elapsed, std::size_t width) {
         const std::lock_guard lock(mutex_);
-        return progress_line(progress_, elapsed);
+        if (progress_.total == 0) return cut_to("preparing, " + duration(elapsed), width);
+        return progress_line(progress_, elapsed - begun_, width);
       }) {}
 
 void StudyProgress::update(const study::Progress& progress) {
   const std::lock_guard lock(mutex_);
+  if (progress_.total == 0)
+    begun_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - made_).count();
   progress_ = progress;
 }
 

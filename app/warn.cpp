@@ -1,13 +1,11 @@
 #include "app/warn.h"
 
-#include <fmt/format.h>
-
-#include <cstdio>
+#include "app/console.h"
 
 namespace asdic::detail::app {
 
 void warn(const std::vector<std::string>& warnings) {
-  for (const std::string& one : warnings) fmt::print(stderr, "asdic: warning: {}\n", one);
+  for (const std::string& one : warnings) tell("asdic: warning: " + one);
 }
 
 }  // namespace asdic::detail::app

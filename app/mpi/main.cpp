@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 
+#include "app/command.h"
 #include "app/console.h"
 #include "app/interrupt.h"
 #include "app/program.h"
@@ -125,6 +126,7 @@ int run(int argc, char** argv) {
           return status;
         });
       });
+  add_help_command(program);
   return program.parse(argc, argv)();  // before MPI: --help needs no ranks
 }
 

@@ -293,6 +293,7 @@ PingRecord PingSimulator::levels(int ping) const {
 
 PingRecord PingSimulator::sound(int ping, const Transmission& sent, const ChoosePart& part) const {
   Stopwatch watch;
+  at_step(ping, 0.0, "paths to targets");
   paths_->memory().next_ping();
   const Emission emission = emit(sent, ping);
   const PingGeometry& geometry = emission.geometry;
@@ -338,6 +339,10 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
   std::vector<PingReverberation> scattered;  // [arrays]
   for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
     const int array = static_cast<int>(a);
+    const auto step = [&](double share, std::string_view doing) {  // the loop is 0.1 to 0.9 of all
+      at_step(ping, 0.1 + 0.8 * (double(a) + share) / double(scenario_.arrays.size()), doing);
+    };
+    step(0.0, "echoes");
     const std::vector<Vec3>& phones = geometry.phones(array);
     const EchoContext context = echo_context(emission, array, record);
     Baseband of_array = scenario_.propagation.wide_band
@@ -349,6 +354,7 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
     add_many_echoes(context, emission, phones, record, of_array);
     append_channels(received, std::move(of_array));
     record.timings.synthesis += watch.lap();
+    step(0.25, "what the sea sends back");
     const auto points = band ? band->points() : std::span<const BandPoint>();
     const std::vector<Vec3> around = geometry.phones_from(
         geometry.reverberation_point(array, emission.pulse.centre_frequency()), array);
@@ -364,6 +370,7 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
     record.timings.rays += watch.lap();
     if (a == 0) record.patches = scattered.back().rows(most_patch_rows, &paths_->memory()).rows;
     record.timings.patches += watch.lap();
+    step(0.5, "reverberation at the phones");
     if (scenario_.reverberation.enabled) {
       const Synthesizer& voice = filtered ? *filtered : synthesizer;
       const PhoneGroups groups = reverberation_groups(emission, array, whole, scattered.back());
@@ -391,6 +398,7 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
     }
     record.timings.synthesis += watch.lap();
   }
+  at_step(ping, 0.9, "levels and noise");
   levels.add_echo(received, peak_pressure);
   levels.add_reverberation(reverberated, peak_pressure);
   if (reverberated.samples == received.samples)

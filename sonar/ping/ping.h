@@ -1,6 +1,8 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <string_view>
+#include <utility>
 
 #include "core/memory_budget.h"
 #include "raytrace/paths/eigenrays.h"
@@ -55,6 +57,10 @@ class PingSimulator {
   /// realisation has one ping. Scatterers that keep their weights are then drawn as those that do
   /// not.
   void receives_one_ping() noexcept { one_ping_ = true; }
+  /// Which step a ping is at, for whoever watches. \param done  the share of its steps that is done
+  using TellStep = std::function<void(int ping, double done, std::string_view doing)>;
+  /// From now on each ping tells its steps, from its own thread.
+  void tell_steps(TellStep tell) { tell_step_ = std::move(tell); }
   /// The same before noise, blanking and the receivers: what is received of this ping alone.
   /// Streams add these up (sonar/ping/stream.h) and complete() the sum.
   [[nodiscard]] PingRecord sound(int ping) const { return sound(ping, transmission(ping)); }
@@ -145,6 +151,9 @@ class PingSimulator {
   [[nodiscard]] std::vector<float> surroundings(const PingRecord& record, std::int64_t first,
                                                 std::int64_t samples) const;
   void blank(PingRecord& record) const;
+  void at_step(int ping, double done, std::string_view doing) const {
+    if (tell_step_) tell_step_(ping, done, doing);
+  }
 
   Scenario scenario_;
   MemoryBudget budget_;  // of each ping
@@ -159,6 +168,7 @@ class PingSimulator {
   double max_doppler_ = 0.0;
   double latest_ = 0.0;  // end of a ping's record [s]
   bool one_ping_ = false;
+  TellStep tell_step_;
 };
 
 }  // namespace asdic::detail

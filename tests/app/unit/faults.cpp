@@ -43,7 +43,8 @@ TEST_P(Faults, AreOneLine) {
 INSTANTIATE_TEST_SUITE_P(
     CommandLine, Faults,
     ::testing::Values(
-        Fault{"", 2, {"no command", "asdic --help"}}, Fault{"pong", 2, {"pong", "asdic --help"}},
+        Fault{"help pong", 2, {"pong", "did you mean \"ping\""}},
+        Fault{"pong", 2, {"pong", "asdic --help"}},
         Fault{"ping", 2, {"SCENARIO", "asdic ping --help"}},
         Fault{"ping small.toml --fast", 2, {"--fast", "asdic ping --help"}},
         Fault{"ping small.toml --pings 0", 2, {"--pings"}},
