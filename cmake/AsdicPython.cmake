@@ -43,8 +43,13 @@ endif()
 set(ASDIC_PYTHON_DIR lib/python3/dist-packages CACHE STRING "Where the system's Python looks for packages, below the prefix")
 install(TARGETS asdic_python LIBRARY DESTINATION ${ASDIC_PYTHON_DIR}/asdic COMPONENT python EXCLUDE_FROM_ALL)
 install(FILES ${modules} DESTINATION ${ASDIC_PYTHON_DIR}/asdic COMPONENT python EXCLUDE_FROM_ALL)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/asdic_pictures DESTINATION ${ASDIC_PYTHON_DIR} COMPONENT python EXCLUDE_FROM_ALL
-        FILES_MATCHING PATTERN "*.py")  # asdic.pictures
+
+foreach(package asdic_pictures asdic_page)
+  if(EXISTS ${PROJECT_SOURCE_DIR}/python/${package})
+    install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/${package} DESTINATION ${ASDIC_PYTHON_DIR} COMPONENT python EXCLUDE_FROM_ALL
+            FILES_MATCHING PATTERN "*.py" PATTERN "*.js" PATTERN "*.css" PATTERN "__pycache__" EXCLUDE)
+  endif()
+endforeach()
 
 # pip's: with the library beside the extension. (In the build tree it lies in lib/.)
 set_target_properties(asdic_python PROPERTIES INSTALL_RPATH "$ORIGIN;$ORIGIN/../../lib")

@@ -1,0 +1,25 @@
+# While a package is made: what its files need of the system, by dpkg-shlibdeps. elf_COMPONENT are the files.
+# Our own library is in none of the system's packages; AsdicPackages.cmake names its package.
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # each package has a description of its own
+set(work "${CPACK_PACKAGE_DIRECTORY}/depends")
+foreach(component IN LISTS CPACK_COMPONENTS_ALL)
+  if(NOT elf_${component})
+    continue()
+  endif()
+  file(MAKE_DIRECTORY "${work}/debian")
+  file(WRITE "${work}/debian/control" "Source: asdic\n\nPackage: asdic\nArchitecture: any\n")
+  list(GET elf_library 0 library)
+  get_filename_component(libraries "${library}" DIRECTORY)
+  execute_process(COMMAND dpkg-shlibdeps -O --ignore-missing-info "-l${libraries}" ${elf_${component}} WORKING_DIRECTORY "${work}"
+                  OUTPUT_VARIABLE said ERROR_VARIABLE complained RESULT_VARIABLE status)
+  if(NOT status EQUAL 0 OR NOT said MATCHES "shlibs:Depends=([^\n]*)")
+    message(FATAL_ERROR "depends.cmake: ${elf_${component}}: dpkg-shlibdeps (Debian: dpkg-dev) said ${said}${complained}")
+  endif()
+  set(found "${CMAKE_MATCH_1}")
+  string(TOUPPER ${component} upper)
+  if(CPACK_DEBIAN_${upper}_PACKAGE_DEPENDS)
+    string(APPEND found ", ${CPACK_DEBIAN_${upper}_PACKAGE_DEPENDS}")
+  endif()
+  set(CPACK_DEBIAN_${upper}_PACKAGE_DEPENDS "${found}")
+endforeach()
+file(REMOVE_RECURSE "${work}")
