@@ -4,6 +4,7 @@
 
 #include "app/console.h"
 #include "app/description.h"
+#include "app/shared_files.h"
 
 // What --help prints.
 namespace asdic::detail::app {
@@ -79,6 +80,16 @@ void add_footer(const std::string& footer, std::size_t width, std::string& text)
   }
 }
 
+/// An example that works as it stands: with the scenarios where they are.
+std::string with_places(std::string example) {
+  const std::string_view relative = " scenarios/";
+  const std::string place = ' ' + told_place("scenarios") + '/';
+  for (std::size_t at = 0; (at = example.find(relative, at)) != std::string::npos;
+       at += place.size())
+    example.replace(at, relative.size(), place);
+  return example;
+}
+
 }  // namespace
 
 Footer parts_of_footer(const std::string& text) {
@@ -96,6 +107,7 @@ Footer parts_of_footer(const std::string& text) {
       examples = false;
     }
     line.erase(0, line.find_first_not_of(' '));
+    if (examples) line = with_places(line);
     if (!line.empty()) (examples ? parts.examples : parts.paragraphs).push_back(line);
   }
   return parts;

@@ -157,4 +157,25 @@ else
   verdict browser FAILED "$(grep '^FAIL\|^ERROR\|Error' <<<"$said" | head -n 3 | tr '\n' ' ')"
 fi
 
+# Debian packages: what lintian says of them, and a clean Debian in which they are installed and used.
+cd "$root"
+if said=$(scripts/packages.sh "$folder/packages" 2>&1); then
+  if ! command -v lintian >/dev/null; then
+    printf '%-12s %s\n' lintian "skipped: not installed (scripts/setup.sh develop)"
+  elif complaints=$(lintian --fail-on error,warning "$folder"/packages/*.deb 2>/dev/null); then
+    verdict lintian good "no errors, no warnings"
+  else
+    verdict lintian FAILED "$(head -n 1 <<<"$complaints")"
+  fi
+  status=0
+  said=$(bash tests/install/clean_root.sh "$folder/packages" 2>&1) || status=$?
+  case $status in
+    0) verdict packages good "$(tr '\n' ';' <<<"$said")" ;;
+    77) printf '%-12s %s\n' packages "$(tail -n 1 <<<"$said")" ;;
+    *) verdict packages FAILED "$(tail -n 1 <<<"$said")" ;;
+  esac
+else
+  verdict packages FAILED "$(tail -n 1 <<<"$said")"
+fi
+
 [ "$failures" = 0 ] && echo "deep check: all good" || { echo "deep check: $failures failed"; exit 1; }

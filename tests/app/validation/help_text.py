@@ -35,7 +35,9 @@ commands = [line.split()[0] for heading, lines in groups for line in lines.split
 if len(commands) < 20 or len(set(commands)) != len(commands) or len(groups) < 5:
     fail(f"bare asdic names {commands}")
 for command in commands:
-    run(command, "--help")
+    for scenario in re.findall(r"\S+/scenarios/\S+\.toml", run(command, "--help", COLUMNS="300")):
+        if not Path(scenario).exists():
+            fail(f"asdic {command} --help: no {scenario}")
 complaint = run("nonsense", status=2)
 known = complaint.split("expected one of ")[1].split(";")[0].split(", ")
 if sorted(known) != sorted(commands):
@@ -130,6 +132,11 @@ for shell, check in [("bash", ["bash", "-n"]), ("zsh", ["zsh", "-n"]), ("fish", 
                 fail(f"{shell}: {done.stderr}")
         else:
             print(f"no {shell} here: its completions not read")
+if shutil.which("fish"):
+    script = f"'{ASDIC}' help --completion fish | source; complete -C 'asdic pi'; complete -C 'asdic ping --outp'"
+    done = subprocess.run(["fish", "--no-config", "-c", script], capture_output=True, text=True)
+    if [line.split()[0] for line in done.stdout.splitlines()] != ["ping", "--output"]:
+        fail(f"fish offers {done.stdout}")
 
 
 def offered(folder, *words):
