@@ -81,13 +81,14 @@ class PingProgress {
   void step(int ping, double share, std::string_view what) {
     const std::lock_guard lock(mutex_);
     in_hand_[ping] = share;
-    if (alone_) bar_.doing(what);
+    if (alone_ || done_ == 0) bar_.doing(what);
     show();
   }
   void done(int ping) {
     const std::lock_guard lock(mutex_);
     in_hand_.erase(ping);
     ++done_;
+    if (!alone_) bar_.doing("");
     show();
   }
 

@@ -75,7 +75,7 @@ apt=$(seconds install --no-install-recommends /packages/asdic_*.deb)
 ping=$(seconds inside "asdic ping $scenario -o ping.h5")
 now=$(inside 'dpkg-query -W | wc -l')
 echo "without recommended packages: apt $apt s ($((now - before)) packages), first ping $ping s after it"
-inside 'asdic info ping.h5 --check >/dev/null; asdic arrivals '"$scenario"' >/dev/null; asdic ping --help >/dev/null'
+inside 'asdic info ping.h5 --check >/dev/null; asdic arrivals '"$scenario"' >/dev/null 2>&1; asdic ping --help >/dev/null'
 inside 'asdic | grep -q "asdic ping /usr/share/asdic/scenarios/deep_ocean.toml"' || fail "bare asdic: how to begin"
 inside 'ldd /usr/bin/asdic | grep -i "mpi\|not found"' && fail "asdic is linked with MPI, or lacks a library"
 inside 'readelf -d /usr/bin/asdic 2>/dev/null | grep -i "r.*path"' && fail "asdic looks for libraries in a place of its own"
@@ -87,12 +87,18 @@ inside 'asdic export ping.h5 --wav -o sounds >/dev/null; ls sounds/*.wav >/dev/n
   asdic study /usr/share/asdic/scenarios/studies/known_answer.toml -q -o study.h5 --set study.realisations=20
   cp /usr/share/asdic/scenarios/bellhop/munk.env .; asdic bellhop munk -q; asdic convert munk.env munk.toml -q'
 
+more=$(seconds install --no-install-recommends python3-h5py python3-matplotlib)
+plot=$(seconds inside 'asdic plot ping.h5 -o pictures')
+echo "with python3-h5py and python3-matplotlib, nothing else: apt $more s, pictures $plot s:" \
+  "$(awk "BEGIN { print $apt + $ping + $more + $plot }") s from apt to the first pictures"
+
 # As a user has it, with what is recommended.
 new_root
 apt=$(seconds install /packages/asdic_*.deb)
 ping=$(seconds inside "asdic ping $scenario -o ping.h5")
 plot=$(seconds inside 'asdic plot ping.h5 -o pictures')
-echo "with recommended packages: apt $apt s, first ping $ping s, pictures $plot s: $(awk "BEGIN { print $apt + $ping + $plot }") s together"
+now=$(inside 'dpkg-query -W | wc -l')
+echo "with all that is recommended: apt $apt s ($((now - before)) packages), first ping $ping s, pictures $plot s: $(awk "BEGIN { print $apt + $ping + $plot }") s together"
 for picture in rays pressure bearing_time levels; do
   inside "test -s pictures/$picture.png" || fail "no picture $picture"
 done
