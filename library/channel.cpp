@@ -103,10 +103,10 @@ ChannelOutput through(const Scenario& scenario, const Channel& channel,
         within, Access::physics(scenario).simulator().scenario().environment, band);
     if (off > told_from)
       result.warnings.push_back(
-          "channel: within the signal's band, " + detail::to_text(band.low) + " to " +
-          detail::to_text(band.high) + " Hz, absorption differs by up to " +
+          "channel: within the signal's band, " + detail::to_text(std::round(band.low)) + " to " +
+          detail::to_text(std::round(band.high)) + " Hz, absorption differs by up to " +
           detail::to_text(std::round(10.0 * off) / 10.0) + " dB from that of " +
-          detail::to_text(channel.frequency) + " Hz, which all of it is given");
+          detail::to_text(channel.frequency) + " Hz, which the channel takes for all of it");
     return result;
   });
 }

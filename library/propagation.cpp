@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "asdic/field.h"
+#include "asdic/ocean.h"
 #include "asdic/rays.h"
 #include "core/text.h"
 #include "core/units.h"
@@ -86,6 +87,20 @@ detail::PropagationResult run_of(const Scenario& scenario,
   } catch (const detail::InputError& error) {
     throw detail::told_of_scenario(error, data.document, data.path);
   }
+}
+
+std::vector<double> sound_speed(const Scenario& scenario, const std::vector<double>& depths,
+                                double range) {
+  return translated([&] {
+    require("range", range, {.noun = "range", .unit = "m", .low = -1e10, .high = 1e10});
+    const Plane plane = plane_of(scenario);
+    std::vector<double> found;
+    for (const double depth : depths) {
+      require("depths", depth, {.noun = "depth", .unit = "m", .low = -20e3, .high = 20e3});
+      found.push_back(detail::sound_speed(plane.ocean, range, depth).c);
+    }
+    return found;
+  });
 }
 
 std::vector<Ray> rays(const Scenario& scenario, const Fan& fan, const Watch& watch) {

@@ -16,11 +16,13 @@ namespace {
 StudyResult shown(const detail::study::StudyFile& file) {
   detail::study::Table table = file.table();
   StudyResult result{.complete = file.complete(), .warnings = file.fingerprint().warnings};
-  for (const detail::study::Column& column : table.columns) {
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    const detail::study::Column& column = table.columns[i];
+    if (column.role == detail::study::Column::Role::reuse) continue;  // the file's bookkeeping
     result.columns.push_back(column.name);
     result.units.push_back(column.unit == "1" ? "" : column.unit);
+    result.values.push_back(std::move(table.values[i]));
   }
-  result.values = std::move(table.values);
   return result;
 }
 

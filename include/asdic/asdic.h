@@ -20,6 +20,7 @@
 #include "asdic/error.h"
 #include "asdic/field.h"
 #include "asdic/file.h"
+#include "asdic/ocean.h"
 #include "asdic/ping.h"
 #include "asdic/platform.h"
 #include "asdic/process.h"

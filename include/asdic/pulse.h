@@ -15,9 +15,12 @@
 /// scenario.set("pulse.duration", 1.0);
 /// ```
 
+#include <complex>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "asdic/scenario.h"
 #include "asdic/value.h"
 
 namespace asdic {
@@ -56,5 +59,19 @@ struct ASDIC_API PulseFile {
   std::string file;
   operator Value() const;
 };
+
+/// What a transmitter sends, sampled: the replica of a matched filter.
+struct Waveform {
+  double sample_rate = 0.0;                      ///< [Hz]
+  std::vector<std::complex<double>> analytic{};  ///< s₊, of unit peak before its window
+  double source_level_db = 0.0;                  ///< p at 1 m = Re{√2·10^(SL/20) µPa · s₊}
+  double centre_frequency = 0.0;                 ///< [Hz]
+  double energy = 0.0;                           ///< ∫|s₊|²dt [s]
+};
+
+/// \param scenario  with a sonar   \param sample_rate  [Hz]; that of its record, or of pressure
+/// that holds the pulse where the record is baseband   \throws InputError
+[[nodiscard]] ASDIC_API Waveform waveform(const Scenario& scenario, int transmitter = 0,
+                                          std::optional<double> sample_rate = {});
 
 }  // namespace asdic

@@ -393,6 +393,7 @@ TEST(PublicStudy, AnswersItsQuestion) {
   EXPECT_LE(pd.low, pd.value);
   EXPECT_LE(pd.value, pd.high);
   EXPECT_EQ(pd.column(pd.columns[0]), pd.values[0]);
+  EXPECT_THROW(static_cast<void>(pd.column("legs_searched")), asdic::InputError);  // bookkeeping
   EXPECT_THROW(static_cast<void>(pd.column("nothing")), asdic::InputError);
   EXPECT_EQ(asdic::read_study(folder / "pd.h5").values, pd.values);
 }

@@ -1,0 +1,60 @@
+#pragma once
+
+/// \file
+/// The ocean of a real place, out of gridded climatologies: what `asdic ocean` writes.
+/// docs/guide/real-ocean.md
+///
+/// ```cpp
+/// const asdic::Ocean sargasso = asdic::ocean({.latitude_deg = 30.5, .longitude_deg = -60.5});
+/// for (const std::string& note : sargasso.notes) std::cout << note << '\n';
+/// std::cout << sargasso.water_depth << " m of water\n" << sargasso.scenario.to_toml();
+/// const asdic::Ocean rise = asdic::ocean(
+///     {.latitude_deg = 31.5, .longitude_deg = -65.5, .bearing_deg = 45.0, .range = 60e3});
+/// std::cout << rise.scenario.has("environment.bottom.shape") << '\n';
+/// ```
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "asdic/export.h"
+#include "asdic/scenario.h"
+
+namespace asdic {
+
+/// A place at sea, or a track from it.
+struct OceanPlace {
+  double latitude_deg = 0.0;   ///< north, −90 to 90
+  double longitude_deg = 0.0;  ///< east, −180..180 or 0..360
+  /// 1 to 12; without: the mean of the year. Of data without months too, as a note then says.
+  std::optional<int> month = {};
+  /// True bearing of a track: sea floor and water along it in place of one place's. With `range`.
+  std::optional<double> bearing_deg = {};
+  std::optional<double> range = {};  ///< length of that track [m]
+  /// Folder of the climatologies; empty: where Debian's package ferret-datasets has them.
+  std::filesystem::path data = {};
+};
+
+/// What the data say of it.
+struct Ocean {
+  Scenario scenario{};                 ///< an [environment], and nothing else
+  double water_depth = 0.0;            ///< at the place [m]
+  std::optional<double> wind_speed{};  ///< at 10 m; none: the data know none [m/s]
+  std::vector<std::string> origins{};  ///< files and their variables
+  std::vector<std::string> notes{};    ///< what to know before trusting it
+};
+
+/// Profile and depth of the nearest grid point. Sound speed is that of temperature and salinity,
+/// along a track a section. The sea floor is abyssal clay, of which the data say nothing.
+/// \throws InputError for data that are missing or unfit, a place on land or out of them
+[[nodiscard]] ASDIC_API Ocean ocean(const OceanPlace& place);
+
+/// Sound speed as rays meet it, interpolation and equations in it. [depths] [m/s]
+/// \param scenario  with a sonar or a [run]   \param depths  [m]   \param range  along the
+/// transect, from the first platform [m]   \throws InputError
+[[nodiscard]] ASDIC_API std::vector<double> sound_speed(const Scenario& scenario,
+                                                        const std::vector<double>& depths,
+                                                        double range = 0.0);
+
+}  // namespace asdic
