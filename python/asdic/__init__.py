@@ -15,6 +15,7 @@ from .channel import Channel
 from .datasets import group
 from .files import open  # noqa: A004  asdic.open
 from .pages import page
+from .places import Ocean, ocean
 from .processing import Processed, process
 from .scenario import Scenario, settings
 from .studies import Measure, StudyResult, read_study, study
@@ -30,6 +31,6 @@ def __getattr__(name: str):
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
-__all__ = ["Arrivals", "AsdicWarning", "Channel", "InputError", "Measure", "Processed",
-           "RunError", "Scenario", "Stopped", "StudyResult", "bellhop", "build", "group", "open",
-           "page", "process", "read_study", "settings", "study", "version"]
+__all__ = ["Arrivals", "AsdicWarning", "Channel", "InputError", "Measure", "Ocean", "Processed",
+           "RunError", "Scenario", "Stopped", "StudyResult", "bellhop", "build", "group", "ocean",
+           "open", "page", "process", "read_study", "settings", "study", "version"]

@@ -73,7 +73,19 @@ def group(dataset, name: str) -> xr.Dataset:
     return xarray().Dataset(found, attrs=attrs)
 
 
+MEANINGS = {"target": "number of the target, from 0", "array": "number of the array, from 0",
+            "delay": "received, after the start of the ping", "struck": "when it struck the target",
+            "doppler_factor": "received over transmitted frequency", "level_db": "of the echo's peak",
+            "arrival_elevation_deg": "elevation of travel, positive up",
+            "arrival_bearing_deg": "true bearing of travel: from the target to the array"}
 UNITS = {"delay": "s", "struck": "s", "path_length": "m", "range": "m", "depth": "m"}
+
+
+ARRIVAL_UNITS = {"delay": "s", "path_length": "m", "range": "m", "level_db": "dB re 1 m",
+                 "spreading_db": "dB", "absorption_db": "dB", "amplitude": "re 1 m",
+                 "bearing_deg": "degrees", "launch_elevation_deg": "degrees",
+                 "arrival_elevation_deg": "degrees", "bounce_range": "m",
+                 "bounce_grazing_deg": "degrees"}
 
 
 def arrivals(columns, legs=None, warnings=()) -> pd.DataFrame:
@@ -85,7 +97,9 @@ def arrivals(columns, legs=None, warnings=()) -> pd.DataFrame:
         data[name] = getattr(columns, name)
     for name in ("bounce_range", "bounce_grazing_deg", "bounce_bottom"):
         data[name] = _objects(getattr(columns, name))
-    return _with_warnings(pd.DataFrame(data, copy=False), warnings)
+    made = pd.DataFrame(data, copy=False)
+    made.attrs["units"] = ARRIVAL_UNITS
+    return _with_warnings(made, warnings)
 
 
 def _with_warnings(made, warnings):
@@ -134,6 +148,31 @@ def field(found: dict) -> xr.DataArray:
     return made.isel(source_depth=0) if len(found["source_depth"]) == 1 else made
 
 
+def profile(depths, speeds) -> xr.DataArray:
+    """Sound speed over depth. → xarray.DataArray"""
+    return xarray().DataArray(speeds, dims="depth", name="sound_speed",
+                              coords={"depth": ("depth", depths, {"units": "m"})},
+                              attrs={"units": "m/s", "long_name": "sound speed"})
+
+
+def waveform(found: dict) -> xr.DataArray:
+    """A pulse. → xarray.DataArray, complex"""
+    samples = found["analytic"]
+    time = np.arange(len(samples)) / found["sample_rate"]
+    return xarray().DataArray(
+        samples, dims="time", name="waveform",
+        coords={"time": ("time", time, {"units": "s", "long_name": "after the leading edge"})},
+        attrs={"units": "1", "sample_rate_hz": found["sample_rate"],
+               "source_level_db": found["source_level_db"],
+               "centre_frequency_hz": found["centre_frequency"], "energy_s": found["energy"]})
+
+
+def times(told, samples: int):
+    """When samples are received, by what a file tells of its pressure. → a coordinate"""
+    return ("sample", told["time_start"] + told["time_step"] * np.arange(samples),
+            {"units": "s", "long_name": "time after the start of the ping"})
+
+
 def ping(scenario, handle, warnings=()) -> xr.Dataset:
     """A ping's record. → xarray.Dataset with the names of docs/formats/ping.md"""
     xr = xarray()
@@ -152,8 +191,10 @@ def ping(scenario, handle, warnings=()) -> xr.Dataset:
     for name, values in handle.echoes.items():
         unit = UNITS.get(name, "degrees" if name.endswith("_deg")
                          else "dB re 1 µPa" if name == "level_db" else "1")
-        variables[f"echoes/{name}"] = ("echo", values, {"units": unit})
-    made = xr.Dataset(variables, coords={"channel": np.arange(pressure.shape[0])},
+        variables[f"echoes/{name}"] = ("echo", values,
+                                       {"units": unit, "long_name": MEANINGS.get(name, name)})
+    made = xr.Dataset(variables, coords={"channel": np.arange(pressure.shape[0]),
+                                         "time": times(told, pressure.shape[1])},
                       attrs={"filetype": "asdic ping", "title": scenario.title or ""})
     made.encoding["asdic"] = handle  # that asdic.process() knows it again
     return _with_warnings(made, warnings)

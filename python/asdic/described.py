@@ -10,6 +10,13 @@ from . import _core
 from ._core import InputError
 
 
+class Text(str):
+    """Lines that a notebook or a prompt shows as lines."""
+
+    def __repr__(self) -> str:
+        return str(self)
+
+
 @dataclass(frozen=True)
 class Setting:
     """One key of a scenario file.

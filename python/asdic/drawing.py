@@ -43,16 +43,36 @@ def _places(scenario) -> list:
     return found
 
 
+def _ends(value) -> tuple | None:
+    """The first and last of what an axis says: a number, several, or evenly spaced ones."""
+    if isinstance(value, dict) and {"first", "last"} <= value.keys():
+        return float(value["first"]), float(value["last"])
+    values = value if isinstance(value, list) else [value]
+    if not values or any(_number(one) is None for one in values):
+        return None
+    return min(values), max(values)
+
+
+def _receivers(scenario) -> tuple | None:
+    """(ranges, depths) of a run's receivers, first and last of each; None: there are none."""
+    if scenario.platforms:
+        return None
+    told = scenario.run.receivers.to_dict()
+    box = _ends(told.get("range")), _ends(told.get("depth"))
+    return None if None in box else box
+
+
 def svg(scenario) -> str:
-    """A section of the sea: surface, floor, platforms, targets."""
-    places = _places(scenario)
+    """A section of the sea: surface, floor, platforms, targets; or a run's source and receivers."""
+    places, receivers = _places(scenario), _receivers(scenario)
     bottom = scenario.environment.bottom
     shape = bottom.shape.to_dict() if not isinstance(bottom.shape, (int, float, type(None))) else {}
     floor = [(0.0, _number(bottom.depth))]
     if isinstance(shape, dict) and shape.get("range") and shape.get("depth"):
         floor = list(zip(shape["range"], shape["depth"]))
     deepest = max([d for _, d in floor if d is not None] + [p[3] for p in places] + [1.0])
-    reach = max([p[2] for p in places] + [r for r, _ in floor])
+    reach = max([p[2] for p in places] + [r for r, _ in floor]
+                + list(receivers[0] if receivers else ()))
     furthest = 1.1 * reach if reach > 0.0 else 1.0
     left, top, wide, high = 44, 16, WIDTH - 60, HEIGHT - 44
 
@@ -75,6 +95,12 @@ def svg(scenario) -> str:
                           [*line, (left + wide, line[-1][1]), (left + wide, top + high),
                            (left, top + high), (left, line[0][1])])
         parts.append(f'<polygon points="{points}" fill="#8a6d3b" fill-opacity="0.55"/>')
+    if receivers:
+        (near, far), (upper, lower) = receivers
+        parts.append(f'<rect x="{x(near):.1f}" y="{y(upper):.1f}" width="{x(far) - x(near):.1f}" '
+                     f'height="{y(lower) - y(upper):.1f}" fill="#c0392b" fill-opacity="0.06" '
+                     'stroke="#c0392b" stroke-dasharray="3 2"/>'
+                     f'<text x="{x(far) - 4:.1f}" y="{y(upper) + 12:.1f}" text-anchor="end">receivers</text>')
     for name, kind, distance, depth in places:
         colour = "#1b6ca8" if kind == "platforms" else "#c0392b"
         a, b = x(distance), y(depth)

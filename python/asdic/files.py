@@ -101,7 +101,11 @@ def _read(path: str, load: bool):
         made.close()
     if load:
         variables = {name: _complex(value) for name, value in variables.items()}
-    coords = {name: value for name, value in variables.items() if value.dims == (name,)}
+    told = variables["pressure"].attrs if "pressure" in variables else {}
+    if "time_start" in told and "sample" in whole.sizes and np.ndim(told["time_start"]) == 0:
+        variables["time"] = xr.Variable(*datasets.times(told, whole.sizes["sample"]))
+    coords = {name: value for name, value in variables.items()
+              if value.dims == (name,) or (name, value.dims) == ("time", ("sample",))}
     found = xr.Dataset({n: v for n, v in variables.items() if n not in coords}, coords, attrs)
     found.encoding["source"] = path
     return found

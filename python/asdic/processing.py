@@ -18,6 +18,11 @@ OPTIONS = ("mvdr", "hann_shading", "max_speed", "split_window", "across_beams", 
            "range_speed")
 
 
+UNITS = {"time": "s", "bearing_deg": "degrees", "elevation_deg": "degrees", "snr_db": "dB",
+         "excess_db": "dB", "level_db": "dB re 1 µPa", "east": "m", "north": "m", "depth": "m",
+         "range": "m", "range_rate": "m/s"}
+
+
 @dataclass
 class Processed:
     """Detections, places and tracks.
@@ -34,6 +39,8 @@ class Processed:
     tracks : list of dict
         array, ambiguous, target and ``points``, a pandas.DataFrame.
     warnings : list of str
+
+    The units of a table's columns are its ``attrs["units"]``.
     """
 
     detections: pd.DataFrame
@@ -74,8 +81,10 @@ def process(source, progress=None, **options) -> Processed:
     columns = ["detection", "east", "north", "depth", "range", "bearing_deg", "range_rate"]
     tracks = [{**track, "points": pd.DataFrame(track["points"])} for track in found["tracks"]]
     tell(found["warnings"])
-    return Processed(pd.DataFrame(found["detections"]), pd.DataFrame(places, columns=columns),
-                     tracks, found["warnings"])
+    detections, where = pd.DataFrame(found["detections"]), pd.DataFrame(places, columns=columns)
+    for table in (detections, where):
+        table.attrs["units"] = {name: UNITS[name] for name in table.columns if name in UNITS}
+    return Processed(detections, where, tracks, found["warnings"])
 
 
 def _handle(dataset):

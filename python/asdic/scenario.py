@@ -101,11 +101,11 @@ class _Table:
     def help(self, name: str | None = None) -> str:
         """What a setting means, its unit, range and default; without a name all of the table's."""
         if name is None:
-            return "\n".join(self.help(key) for key in described.keys_of(self._place))
+            return described.Text("\n".join(self.help(key) for key in described.keys_of(self._place)))
         place = self._of(name)[1]
         if place in described.settings():
-            return "\n".join(one.doc for one in described.settings()[place])
-        return f"{place}: {described.tables()[place]['help']}"
+            return described.Text("\n".join(one.doc for one in described.settings()[place]))
+        return described.Text(f"{place}: {described.tables()[place]['help']}")
 
     def to_dict(self) -> dict:
         """What was set, without defaults."""
@@ -253,16 +253,20 @@ class Scenario(_Table):
         if bathymetry is not None and not core.has("environment.bottom.kind"):
             for key, value in oceans.SAND.items():
                 core.set(f"environment.bottom.{key}", value)
+        self._take(sections)
+        if file is None:
+            for key, value in (set or {}).items():
+                core.set(key, value)
+
+    def _take(self, sections: Mapping) -> None:
+        """Sections by their names; a table is put into one that is there."""
         for name, value in sections.items():
             path, place = self._of(name)
             if isinstance(value, Mapping) and isinstance(self._get(path), dict):
                 for key, inner in value.items():
-                    core.set(f"{path}.{key}", oceans.setting(f"{place}.{key}", inner))
+                    self._core.set(f"{path}.{key}", oceans.setting(f"{place}.{key}", inner))
             else:
-                core.set(path, oceans.setting(place, value))
-        if file is None:
-            for key, value in (set or {}).items():
-                core.set(key, value)
+                self._core.set(path, oceans.setting(place, value))
 
     @classmethod
     def parse(cls, text: str, name="scenario.toml") -> Scenario:
@@ -275,9 +279,17 @@ class Scenario(_Table):
         _Table.__init__(made, core, "", "")
         return made
 
+    def to_dict(self) -> dict:
+        """What was set, without defaults, by the keys of the file."""
+        return {key: self._core.get(key) for key in described.keys_of("") if self._core.has(key)}
+
     def copy(self) -> Self:
         """Another one. The ocean and the paths that were found are shared until one is changed."""
-        return self._of_core(self._core.copy())
+        made = self._of_core(self._core.copy())
+        own: tuple[str, ...] = type(self).__slots__
+        for name in own:  # notes of what it was read from
+            object.__setattr__(made, name, getattr(self, name))
+        return made
 
     def __copy__(self):
         return self.copy()
@@ -419,6 +431,33 @@ class Scenario(_Table):
         tell(told)
         return datasets.rays(found, warnings=told)
 
+    def sound_speed(self, depths, range: float = 0.0) -> xr.DataArray:
+        """Sound speed as rays meet it, interpolation and equations in it.
+
+        `depths` [m]; `range` along the transect, from the first platform [m].
+
+        Returns an xarray.DataArray over depth [m/s].
+        """
+        core = self._core
+        if not core.has("platform") and not core.has("run"):
+            core = self._with_run(frequency=1000.0, source_depth=0.0, depths=[0.0],
+                                  ranges=[1.0])._core
+        z = np.atleast_1d(np.asarray(depths, float))
+        return datasets.profile(z, _core.sound_speed(core, z.tolist(), range))
+
+    def waveform(self, sample_rate: float | None = None, transmitter: int | str = 0) -> xr.DataArray:
+        """What a transmitter sends: the replica of a matched filter.
+
+        `sample_rate` [Hz]: that of the record; where it is baseband, of pressure that holds the
+        pulse. `transmitter`: number or name.
+
+        Returns an xarray.DataArray over time [s], complex: the analytic signal, 1 at its peak before
+        its window. Pressure at 1 m is ``np.sqrt(2) * 1e-6 * 10**(SL / 20) * w.real`` [Pa] with
+        ``w.attrs["source_level_db"]``; ``energy_s`` is the integral of its square.
+        """
+        return datasets.waveform(_core.waveform(self._core, self._number("transmitter", transmitter),
+                                                sample_rate))
+
     def field(self, *, frequency=None, source_depth=None, depths=None,
               ranges=None) -> xr.DataArray:
         """The pressure field of a source: what [run] asks for, or the arguments.
@@ -467,6 +506,8 @@ class Scenario(_Table):
         pulse = self.pulse
         if pulse.frequency is not None:
             return pulse.frequency
+        if pulse.start_frequency is None:  # samples
+            return self.waveform().attrs["centre_frequency_hz"]
         return 0.5 * (pulse.start_frequency + pulse.end_frequency)
 
     # ------------------------------------------------------------ pings

@@ -84,7 +84,7 @@ def _shown(found: dict) -> StudyResult:
                        found["warnings"])
 
 
-def study(source, output, *, measures: Mapping | None = None, set: Mapping | None = None,
+def study(source, output=None, *, measures: Mapping | None = None, set: Mapping | None = None,
           realisations: int | None = None, vary: Mapping | None = None,
           measure=None, summary: Mapping | None = None, fresh: bool = False,
           progress=None) -> StudyResult:
@@ -96,8 +96,9 @@ def study(source, output, *, measures: Mapping | None = None, set: Mapping | Non
     source : path or Scenario
         A study file (docs/formats/study.md), or the scenario of a study that the next parameters
         tell of.
-    output : path
-        The file of its rows (HDF5).
+    output : path, optional
+        The file of its rows (HDF5). Without one the rows are in the result alone, and a study that
+        is stopped is lost.
     measures : mapping, optional
         {name of the column: function of a ping's dataset, or Measure}.
     set : mapping, optional
@@ -119,8 +120,9 @@ def study(source, output, *, measures: Mapping | None = None, set: Mapping | Non
                     "version": one._version(), "samples": one.samples, "of": _called(one.of)})
 
     def run(file) -> StudyResult:
-        found = _shown(_core.study(os.fspath(file), os.fspath(output), changes, own, fresh,
-                                   progress))
+        with tempfile.TemporaryDirectory() as folder:
+            rows = os.path.join(folder, "study.h5") if output is None else os.fspath(output)
+            found = _shown(_core.study(os.fspath(file), rows, changes, own, fresh, progress))
         tell(found.warnings)
         return found
 

@@ -46,6 +46,18 @@ py::list rays_of(const Scenario& scenario, double lowest_deg, double highest_deg
 void add_field(py::module_& module) {
   module.def("field", &field_of);
   module.def("rays", &rays_of);
+  module.def("sound_speed",
+             [](const Scenario& scenario, const std::vector<double>& depths, double range) {
+               return taken(sound_speed(scenario, depths, range));
+             });
+  module.def(
+      "waveform", [](const Scenario& scenario, int transmitter, std::optional<double> sample_rate) {
+        Waveform found = waveform(scenario, transmitter, sample_rate);
+        return py::dict("sample_rate"_a = found.sample_rate,
+                        "analytic"_a = taken(std::move(found.analytic)),
+                        "source_level_db"_a = found.source_level_db,
+                        "centre_frequency"_a = found.centre_frequency, "energy"_a = found.energy);
+      });
 }
 
 }  // namespace asdic::python

@@ -33,6 +33,14 @@ void add_files(py::module_& module) {
     BellhopCase found = read_bellhop(root);
     return py::make_tuple(found.scenario, found.notes);
   });
+  module.def("ocean", [](double latitude, double longitude, std::optional<int> month,
+                         std::optional<double> bearing_deg, std::optional<double> range,
+                         const std::filesystem::path& data) {
+    const Ocean found = watched([&](const Watch&) {
+      return ocean({latitude, longitude, month, bearing_deg, range, data});
+    });
+    return py::make_tuple(found.scenario, found.origins, found.notes);
+  });
   module.def("write_run", [](const std::filesystem::path& path, const Scenario& scenario,
                              const py::object& progress) {
     return watched([&](const Watch& watch) { return write_run(path, scenario, watch); }, progress);
