@@ -1,6 +1,7 @@
 """What the library computes as pandas and xarray hold it, with the units of asdic's files."""
 from __future__ import annotations
 
+import threading
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,6 +11,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _xarray = None
+_lock = threading.Lock()
 
 
 def xarray():
@@ -18,8 +20,10 @@ def xarray():
     if _xarray is None:
         import xarray as xr
 
-        xr.register_dataset_accessor("asdic")(Accessor)
-        _xarray = xr
+        with _lock:  # measures of a study come here from several threads
+            if _xarray is None:
+                xr.register_dataset_accessor("asdic")(Accessor)
+                _xarray = xr
     return _xarray
 
 

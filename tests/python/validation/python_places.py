@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """The Python package: oceans of real places, profiles, waveforms, times, and what a notebook shows."""
 import os
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -132,6 +133,19 @@ class Shown(unittest.TestCase):
         self.assertEqual(s.arrivals(range=25e3, depth=125.0).attrs["units"]["delay"], "s")
         case = asdic.bellhop.read(BELLHOP / "munk-coherent-hat/case.env")
         self.assertEqual(case.copy().notes, case.notes)
+
+    def test_threads_may_be_the_first_to_need_xarray(self):
+        """As the measures of a study are: the accessor is registered once."""
+        text = ("import threading, warnings, asdic.datasets as d\n"
+                "warnings.simplefilter('error')\n"
+                "failed = []\n"
+                "threading.excepthook = lambda told: failed.append(told)\n"
+                "all_ = [threading.Thread(target=d.xarray) for _ in range(8)]\n"
+                "[t.start() for t in all_], [t.join() for t in all_]\n"
+                "assert not failed, failed[0].exc_value\n")
+        done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True,
+                              env={**os.environ, "PYTHONPATH": str(BUILD.resolve() / "python")})
+        self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_a_study_needs_no_file(self):
         found = asdic.study(SCENARIOS / "studies/known_answer.toml", set={"study.realisations": 20})
