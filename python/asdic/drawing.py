@@ -108,8 +108,8 @@ def svg(scenario) -> str:
         parts.append(f'<circle cx="{a:.1f}" cy="{b:.1f}" r="4" fill="{colour}"/>'
                      f'<text x="{a + (-7 if end else 7):.1f}" y="{b + 3.5:.1f}" '
                      f'text-anchor="{"end" if end else "start"}">{_escaped(name)}</text>')
-    parts.append(f'<text x="{left - 4}" y="{top + 4}" text-anchor="end">0 m</text>'
-                 f'<text x="{left - 4}" y="{y(deepest) + 4:.1f}" text-anchor="end">'
+    parts.append(f'<text x="{left - 7}" y="{top + 4}" text-anchor="end">0 m</text>'
+                 f'<text x="{left - 7}" y="{y(deepest) + 4:.1f}" text-anchor="end">'
                  f'{deepest:.0f} m</text>'
                  f'<text x="{left}" y="{HEIGHT - 14}">0 km</text>')
     if reach > 0.0:
