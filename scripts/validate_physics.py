@@ -84,14 +84,17 @@ def table_of_page(result):
 def draw(result, title, file):
     """The problem's picture, in few colours, small."""
     from asdic_pictures import style
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from PIL import Image
-    fig, axes = style.plt.subplots(figsize=(6.4, 3.6), dpi=100)
-    axes.set_title(title, fontsize=10)
-    result.draw(axes, style)
-    axes.grid(True)
     data = io.BytesIO()
-    fig.savefig(data, dpi=100)
-    style.plt.close(fig)
+    with style.look():
+        fig = style.Picture(figsize=(6.4, 3.6), dpi=100)
+        FigureCanvasAgg(fig)
+        axes = fig.subplots()
+        axes.set_title(title, fontsize=10)
+        result.draw(axes, style)
+        axes.grid(True)
+        fig.savefig(data, dpi=100)
     data.seek(0)
     for colours in (48, 24, 12):
         Image.open(data).convert("RGB").quantize(colours).save(file, optimize=True)

@@ -198,7 +198,7 @@ def draw_map(study: Study) -> dict:
     return figures
 
 
-def tail_of(study: Study, suffix: str, least: float):
+def tail_of(study: Study, suffix: str, least: float, most: float):
     """The ROC beyond the smallest probability that the realisations can tell, one in as many as
     there are: the largest tenth of the values without an echo, as powers, go on as the exponential
     law that noise has after a filter. → pfa, pd, or None where the table does not tell them
@@ -212,7 +212,7 @@ def tail_of(study: Study, suffix: str, least: float):
         return None
     start = np.quantile(absent, 1.0 - TAIL)
     mean = np.mean(absent[absent > start] - start)
-    pfa = np.geomspace(least, 1.5 / absent.size, 40)
+    pfa = np.geomspace(least, most, 40)
     threshold = 10.0 * np.log10(start + mean * np.log(TAIL / pfa))
     present = np.nan_to_num(present[~np.isnan(present)], neginf=-300.0)
     return pfa, np.mean(present[None, :] > threshold[:, None], axis=1)
@@ -250,7 +250,8 @@ def draw_roc(study: Study) -> dict:
         suffix = table.name[3:]
         shade = style.colour(k)
         pfa, pd = table["pfa"].values, table["pd"].values
-        seen = pfa > 0
+        # of thresholds with as many false alarms the one that detects the most
+        seen = (pfa > 0) & np.append(np.diff(pfa) > 0, True)
         counted = pfa[seen].min(initial=1.0)
         name = table.name[4:].replace("_", " ")
         axes.fill_between(pfa[seen], table["pd_low"].values[seen], table["pd_high"].values[seen],
@@ -260,7 +261,7 @@ def draw_roc(study: Study) -> dict:
         point = operating_point(study, suffix)
         wanted = min(counted, point[0] / 3.0) if point else counted
         least = min(least, wanted)
-        further = tail_of(study, suffix, wanted) if wanted < counted else None
+        further = tail_of(study, suffix, wanted, counted) if wanted < counted else None
         if further:
             guessed = True
             axes.plot(*further, color=shade, ls=(0, (4, 2)),

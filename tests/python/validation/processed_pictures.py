@@ -249,7 +249,7 @@ class OneConvention(Case):
     def test_in_all_pictures(self):
         """Sound comes from 5° below: 0.996 of the cosine. A beam of 8 phones is 13° wide."""
         true = np.degrees(np.arctan2(2000.0, 1500.0))
-        for heading, second in ((0.0, False), (200.0, False), (90.0, True)):
+        for heading, second in ((0.0, False), (90.0, True), (200.0, False))[:3 if DEEP else 2]:
             scenario = SCENARIO.format(array=ARRAYS["horizontal"] + f"\nheading_deg = {heading}")
             with self.subTest(heading=heading), PingFile(self.made(scenario, 1)) as data:
                 found = {}
