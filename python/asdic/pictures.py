@@ -134,11 +134,15 @@ def _scene(scenario):
     """A scenario as a file to draw."""
     from .scenario import Scenario
 
-    with _told(), tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory() as folder:
         made = os.path.join(folder, "scene.h5")
         read = Scenario(scenario) if _source.is_path(scenario) else scenario
         _core.write_scene(made, read._core)
-        yield made
+        try:
+            yield made
+        except _data.InputError as error:   # of the scenario, not of the file it went through
+            where = os.fspath(scenario) if _source.is_path(scenario) else "scenario"
+            raise described.made(where, *error.words[1:]) from None
 
 
 # ------------------------------------------------------------------------------------ pings

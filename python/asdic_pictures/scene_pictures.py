@@ -225,11 +225,13 @@ def array(scene: Scene, axes=None, limits=None):
             panel.plot(x, y, color=style.GREY, lw=0.6, zorder=2)
             panel.scatter(x, y, c=order, cmap=style.MAP, s=22, zorder=3, lw=0.4,
                           edgecolors=style.INK)
-            for which in (0, len(phones) - 1):
-                panel.annotate(str(which), (x[which], y[which]), (4.0, 5.0),
-                               textcoords="offset points", fontsize=8, color=style.NOTE)
-            panel.grid(True)
             span = max(np.ptp(phones, axis=0).max(), np.ptp(flat @ axis), 1e-3)
+            last = len(phones) - 1
+            apart = np.hypot(x[last] - x[0], y[last] - y[0]) > 0.1 * span
+            for which, word in ((0, "0"), (last, str(last))) if apart else ((0, f"0 to {last}"),):
+                panel.annotate(word, (x[which], y[which]), (4.0, 5.0), textcoords="offset points",
+                               fontsize=8, color=style.NOTE)
+            panel.grid(True)
             for middle, put in ((0.5 * (x.min() + x.max()), panel.set_xlim),
                                 (0.5 * (y.min() + y.max()), panel.set_ylim)):
                 put(middle - 0.6 * span, middle + 0.6 * span)

@@ -1,4 +1,4 @@
-"""Where numbers come from: a file on the disk, or a dataset in memory that looks like one.
+"""Where numbers come from: a file on the disk, one that is open, or a dataset in memory.
 
 Readers (data.py, results.py, study_data.py, scene.py) know h5py's way of asking: `f["echoes/delay"]`,
 `"rays" in f`, `f.attrs`. A dataset of xarray, as `asdic.open` and `Scenario.ping` give it, answers
@@ -15,15 +15,23 @@ def is_path(source) -> bool:
     return isinstance(source, (str, os.PathLike))
 
 
+def is_open(source) -> bool:
+    """An h5py.File."""
+    return hasattr(source, "visititems")
+
+
 def is_dataset(source) -> bool:
-    """An xarray.Dataset, or a tree of them."""
-    return hasattr(source, "subtree") or (hasattr(source, "data_vars") and hasattr(source, "attrs"))
+    """An xarray.Dataset or a tree of them, or an open file."""
+    return hasattr(source, "subtree") or is_open(source) \
+        or (hasattr(source, "data_vars") and hasattr(source, "attrs"))
 
 
 def name_of(source) -> str:
     """For messages and titles: where a dataset was read, if it was."""
     if is_path(source):
         return os.fspath(source)
+    if is_open(source):
+        return str(source.file.filename)
     return str(getattr(source, "encoding", {}).get("source", "") or "dataset")
 
 
@@ -96,8 +104,33 @@ class Group:
         pass
 
 
-def of_dataset(dataset) -> Group:
+class Kept:
+    """An open file that is the caller's: it stays open."""
+
+    def __init__(self, file):
+        self._file = file
+        self.attrs = file.attrs
+
+    def __contains__(self, name) -> bool:
+        return name in self._file
+
+    def __getitem__(self, name):
+        return self._file[name]
+
+    def close(self) -> None:
+        pass
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        pass
+
+
+def of_dataset(dataset):
     """Arrays of groups are called by their path, "echoes/delay"; so are their attributes."""
+    if is_open(dataset):
+        return Kept(dataset)
     if not hasattr(dataset, "subtree"):
         return Group({str(k): v for k, v in dataset.variables.items()}, dict(dataset.attrs))
     variables, attributes = {}, {}

@@ -217,6 +217,12 @@ class Before(Case):
         np.testing.assert_allclose(places[:, 1], 0.0, atol=1e-9)
         self.assertIn("0.5 wavelengths", above.get_title(loc="left"))
 
+    def test_words_of_an_upright_array_and_of_none(self):
+        s = asdic.Scenario.parse(SEA.replace('kind = "horizontal"', 'kind = "vertical"'))
+        self.assertEqual(faults(pictures.array(s)), [])
+        with self.assertRaisesRegex(asdic.InputError, f"^{FRONT}: found no array"):
+            pictures.array(FRONT)
+
     def test_every_profile_of_water_that_varies_with_range(self):
         axes = pictures.sound_speed(FRONT).axes[0]
         profiles = [x for x in axes.lines if len(x.get_xdata()) > 2]

@@ -263,6 +263,14 @@ class InMemory(Case):
                 pages.append(np.asarray(fig.canvas.buffer_rgba()).copy())
             self.assertTrue(np.array_equal(*pages), name)
 
+    def test_an_open_file_stays_open(self):
+        self.write()
+        with h5py.File(self.file) as f:
+            one = api.of_ping("levels", f)
+            self.assertTrue(f.id.valid)
+            np.testing.assert_array_equal(one.axes[0].lines[0].get_ydata(),
+                                          api.of_ping("levels", self.file).axes[0].lines[0].get_ydata())
+
     def test_complex_numbers_are_pairs(self):
         values = np.array([[1 + 2j, 3 - 4j]], np.complex64)
         member = source.Member(self.Variable(values, {}))
