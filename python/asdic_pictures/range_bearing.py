@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from . import bearings, processed, style
+from . import processed, style
 
 TITLE = "Range and bearing"
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.lines import Line2D
 
-from . import style
+from . import results, sea, style
 
 TITLE = "Rays of the transmitted beam and eigenrays to the targets"
 
@@ -41,8 +41,8 @@ def largest_range(data, row, r, targets):
 def disc(target, there):
     """A target: full, or hollow where it is not there in this ping."""
     colour = style.colour(target)
-    return dict(marker="o", ms=9, mfc=colour if there else style.PAPER, mec=style.PAPER if there else colour,
-                mew=1.2 if there else 1.8)
+    return dict(marker="o", ms=9, mfc=colour if there else style.PAPER,
+                mec=style.PAPER if there else colour, mew=1.2 if there else 1.8)
 
 
 def in_one_plane(platform, targets):
@@ -54,15 +54,14 @@ def in_one_plane(platform, targets):
 
 
 def draw_profile(axes, data):
+    """Of water that varies with range each profile."""
     z, c = data.profile
-    axes.plot(c, z, color=style.BLUE, lw=1.8)
-    axes.set_xlabel("sound speed\nm/s")
+    water = results.Sea(depth=z, sound_speed=c)
+    if data.has("environment/section_sound_speed"):
+        water.section_range, water.section_depth, water.section_speed = (
+            data.read(f"environment/section_{part}") for part in ("range", "depth", "sound_speed"))
+    sea.draw_profile(axes, water, "transect at")
     axes.set_ylabel("depth / m")
-    low, high = np.nanmin(c), np.nanmax(c)
-    room = max(0.12 * (high - low), 5.0)
-    axes.set_xlim(low - room, high + room)
-    axes.xaxis.set_major_locator(style.ticker.MaxNLocator(2, integer=True))
-    axes.grid(True)
 
 
 @style.picture

@@ -136,10 +136,9 @@ def geometry(scene: Scene, axes=None, limits=None):
                                       gridspec_kw={"width_ratios": [1.0, 1.25]})
     draw_map(left, scene)
     draw_section(right, scene)
-    moving = "the ways are those until" if scene.end else "until"
-    style.subtitle(left, f"{scene.title}  ·  {scene.pings} "
-                         f"{'ping' if scene.pings == 1 else 'pings'} at {scene.frequency:g} Hz, {moving} "
-                         f"the last record ends, {scene.end:g} s", marks=True)
+    pings = "1 ping" if scene.pings == 1 else f"{scene.pings} pings"
+    style.subtitle(left, f"{scene.title}  ·  {pings} at {scene.frequency:g} Hz, the ways are those "
+                         f"until the last record ends, {scene.end:g} s", marks=True)
     right.annotate(f"section along {scene.bearing:.0f}° true (dashed in the map); all things by "
                    "their range", (0.0, 1.0), (0.0, 4.0), "axes fraction", "offset points",
                    fontsize=8.5, color=style.NOTE, annotation_clip=False).set_in_layout(False)
@@ -190,10 +189,7 @@ def sound_speed(scene: Scene, axes=None, limits=None):
     several = len(seas.profiles(known))
     style.subtitle(axes, scene.title + ("  ·  speeds of the marks are those at range 0"
                                         if several > 1 else ""))
-    of_profiles = axes.get_legend()
     style.legend_below(axes, made, ncol=3)
-    if of_profiles:
-        axes.add_artist(of_profiles)
     return fig
 
 
@@ -242,7 +238,7 @@ def array(scene: Scene, axes=None, limits=None):
         beside.set_xlabel(f"along {bearing:.0f}° true / m")
         beside.set_ylabel("down / m")
         space = np.linalg.norm(np.diff(phones, axis=0), axis=1)
-        wave = 1e99 if not scene.frequency > 0 else float(np.median(scene.sea.sound_speed)) / scene.frequency
+        wave = float(np.median(scene.sea.sound_speed)) / scene.frequency
         style.subtitle(above, f"{names[k] if k < len(names) else 'array'}: {len(phones)} phones, "
                               f"{np.median(space):.4g} m from one to the next, "
                               f"{np.median(space) / wave:.2g} wavelengths at {scene.frequency:g} Hz"

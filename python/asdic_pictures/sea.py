@@ -71,7 +71,7 @@ def profiles(sea):
 MOST_PROFILES = 6
 
 
-def draw_profile(axes, sea) -> None:
+def draw_profile(axes, sea, at: str = "at range") -> None:
     """The sound speed over depth; of water that varies with range each profile, the key says of
     which range.
     """
@@ -96,7 +96,7 @@ def draw_profile(axes, sea) -> None:
     axes.grid(True)
     if len(several) > 1:
         some = f"{len(several)} of {many} profiles" if many > len(several) else "profiles"
-        axes.legend(loc="lower right", fontsize=7, handlelength=1.0, title=f"{some}\nat range",
+        axes.legend(loc="best", fontsize=7, handlelength=1.0, title=f"{some}\n{at}",
                     title_fontsize=7, labelspacing=0.25, borderaxespad=0.2, frameon=True,
                     framealpha=0.85, facecolor=style.PAPER, edgecolor="none")
 

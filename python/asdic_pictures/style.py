@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import functools
 import io
+import re
 import textwrap
 from contextlib import contextmanager
 
@@ -168,7 +169,7 @@ def title(fig, text: str) -> None:
 
 def plain(text) -> str:
     """Never read as mathematics, in one line."""
-    return " ".join(str(text).replace("$", r"\$").split())
+    return re.sub(r"[ \t\r\n\f\v]+", " ", str(text).replace("$", r"\$")).strip()
 
 
 def width_of(text: str, size: float, weight: str = "normal") -> float:
@@ -251,8 +252,11 @@ def legend_below(axes, handles=None, points: float = 40.0, ncol: int = 6, **opti
             break
         columns -= 1
     below = axes.transAxes + ScaledTranslation(0.0, -points / 72.0, axes.figure.dpi_scale_trans)
+    before = axes.get_legend()
     legend = axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(0.0, 0.0), ncol=columns,
                          bbox_transform=below, borderaxespad=0.0, borderpad=0.0, **options)
+    if before:      # axes.legend() has put it away
+        axes.add_artist(before)
     # wider than its axes it would squeeze them: a strut keeps its height free instead
     legend.set_in_layout(False)
     height = 14.0 * -(-len(handles) // columns) + 2.0

@@ -61,7 +61,8 @@ def draw(data, ping, axes=None, limits=None):
     style.colour_bar(fig, mesh, right, f"level in {width:.0f} Hz / dB re 1 µPa")
     ending = "  ·  stopped early" if data.stopped else ""
     style.subtitle(right, f"{data.title or data.path}  ·  {rows.size} pings{beam}{ending}")
-    handles = [style.box_key(style.colour(target), f"{style.name(name)}: its strongest true echo, one pulse long")
+    handles = [style.box_key(style.colour(target),
+                             f"{style.name(name)}: its strongest true echo, one pulse long")
                for target, name in mark_true_echoes(right, data, edges).items()]
     style.legend_below(right, handles[:6], ncol=2)
     return fig

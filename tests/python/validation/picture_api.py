@@ -21,7 +21,6 @@ import asdic  # noqa: E402
 WITHOUT_MATPLOTLIB = "matplotlib" not in sys.modules
 from asdic import pictures  # noqa: E402
 
-import h5py  # noqa: E402
 import numpy as np  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 from deep import DEEP  # noqa: E402

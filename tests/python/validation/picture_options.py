@@ -180,6 +180,11 @@ class Words(Case):
             self.assertIn(told, err)
             self.assertFalse(self.pictures.exists())
 
+    def test_h5py_and_matplotlib_are_enough(self):
+        self.write()
+        self.assertEqual(plot(self.file, "-o", self.pictures, "--only", "rays")[0], 0)
+        self.assertEqual({"xarray", "pandas", "asdic"} & set(sys.modules), set())
+
     def test_limits_are_obeyed(self):
         """Of all, of one, and of one beside all."""
         data = self.open()
