@@ -28,7 +28,7 @@ if(TARGET asdic_mpi)
   asdic_install_program(asdic_mpi mpi)
 endif()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/ DESTINATION ${CMAKE_INSTALL_DATADIR}/asdic/python COMPONENT program
-        FILES_MATCHING PATTERN "*.py" PATTERN "*.js" PATTERN "*.css" PATTERN "binding" EXCLUDE PATTERN "asdic" EXCLUDE
+        FILES_MATCHING PATTERN "*.py" PATTERN "*.js" PATTERN "*.css" PATTERN "*.html" PATTERN "binding" EXCLUDE PATTERN "asdic" EXCLUDE
         PATTERN "__pycache__" EXCLUDE)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenarios/ DESTINATION ${CMAKE_INSTALL_DATADIR}/asdic/scenarios COMPONENT program)
 # The pages, so that their links lead somewhere.

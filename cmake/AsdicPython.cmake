@@ -47,7 +47,7 @@ install(FILES ${modules} DESTINATION ${ASDIC_PYTHON_DIR}/asdic COMPONENT python 
 foreach(package asdic_pictures asdic_page)
   if(EXISTS ${PROJECT_SOURCE_DIR}/python/${package})
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/${package} DESTINATION ${ASDIC_PYTHON_DIR} COMPONENT python EXCLUDE_FROM_ALL
-            FILES_MATCHING PATTERN "*.py" PATTERN "*.js" PATTERN "*.css" PATTERN "__pycache__" EXCLUDE)
+            FILES_MATCHING PATTERN "*.py" PATTERN "*.js" PATTERN "*.css" PATTERN "*.html" PATTERN "__pycache__" EXCLUDE)
   endif()
 endforeach()
 
