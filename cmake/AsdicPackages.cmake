@@ -47,6 +47,7 @@ the truth behind it, as HDF5. It traces its own rays, computes fields and
 eigenrays, reads BELLHOP's cases, processes pings, and runs Monte Carlo
 studies. One program serves every x86-64 processor from 2008 on.")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "python3, python3-numpy, python3-h5py, python3-matplotlib")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_CONTROL_EXTRA "${PROJECT_SOURCE_DIR}/cmake/packages/program/postinst;${PROJECT_SOURCE_DIR}/cmake/packages/program/prerm")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "asdic-mpi, python3-asdic, ferret-datasets")
 
 asdic_package(library ${library_package} "simulator of active sonars - shared library"
@@ -85,7 +86,7 @@ does, in the types of NumPy, pandas and xarray.")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-h5py, python3-h5netcdf, python3-matplotlib")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "asdic, jupyter-notebook")
   # its byte code, as Debian's packages of Python have it
-  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA "${PROJECT_SOURCE_DIR}/cmake/packages/postinst;${PROJECT_SOURCE_DIR}/cmake/packages/prerm")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA "${PROJECT_SOURCE_DIR}/cmake/packages/python/postinst;${PROJECT_SOURCE_DIR}/cmake/packages/python/prerm")
 endif()
 
 # What each file needs of the system; the program's lazily loaded libraries are those of libasdic.so.

@@ -156,6 +156,8 @@ if ls "$packages"/asdic-mpi_*.deb >/dev/null 2>&1; then
 fi
 
 # Gone without a trace.
-inside 'apt-get purge -y -qq asdic asdic-mpi "libasdic*" python3-asdic >/tmp/log 2>&1; ls /usr/share/asdic /usr/lib/python3/dist-packages/asdic 2>/dev/null && exit 1; true' ||
-  fail "left after apt-get purge"
+inside 'apt-get purge -y -qq asdic asdic-mpi "libasdic*" python3-asdic >/tmp/log 2>&1'
+for place in share/asdic share/doc/asdic lib/python3/dist-packages/asdic include/asdic; do
+  [ ! -e "$root/usr/$place" ] || fail "left after apt-get purge: $(find "$root/usr/$place" | head -n 5)"
+done
 echo "purged: nothing is left"
