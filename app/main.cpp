@@ -30,7 +30,7 @@ std::vector<CommandGroup> overview() {
           {"Look at results",
            {{"info", "what a file holds, on one screen"},
             {"plot", "pictures of a file"},
-            {"export", "a ping as WAV"},
+            {"export", "a ping as WAV or MAT"},
             {"compare", "how far two results are apart"}}},
           {"BELLHOP",
            {{"bellhop", "run a case: .env in, .shd, .arr or .ray out"},
