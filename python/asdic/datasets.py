@@ -36,8 +36,7 @@ class Accessor:
     @property
     def times(self):
         """[samples] when the samples of ``pressure`` are received, after the start of the ping [s]"""
-        told = self._dataset["pressure"].attrs
-        return told["time_start"] + told["time_step"] * np.arange(self._dataset.sizes["sample"])
+        return times(self._dataset["pressure"].attrs, self._dataset.sizes["sample"])[1]
 
     @property
     def pressure(self):
@@ -68,8 +67,9 @@ class Accessor:
 def group(dataset, name: str) -> xr.Dataset:
     """The arrays of a group of a file (``"echoes"``) under their own names. → xarray.Dataset"""
     before = name.rstrip("/") + "/"
-    found = {key[len(before):]: value for key, value in dataset.variables.items()
-             if str(key).startswith(before)}
+    found = {key[len(before):]: (tuple(str(dim).removeprefix(before) for dim in value.dims),
+                                 value._data, value.attrs)
+             for key, value in dataset.variables.items() if str(key).startswith(before)}
     if not found:
         raise KeyError(f"{name}: no such group")
     attrs = {key[len(before):]: value for key, value in dataset.attrs.items()

@@ -83,7 +83,9 @@ def _read(path: str, load: bool):
     whole = made.load() if load else made
     variables = dict(whole.variables)
     attrs = dict(whole.attrs)
-    sizes = dict(whole.sizes)
+    told = variables["pressure"].attrs if "pressure" in variables else {}
+    timed = "time_start" in told and "sample" in whole.sizes and np.ndim(told["time_start"]) == 0
+    sizes = dict(whole.sizes) | ({"time": 0} if timed else {})  # that no group's dimension has
     for name in groups:
         part = xr.open_dataset(path, engine="h5netcdf", group=name, decode_times=False,
                                phony_dims="access")
@@ -101,8 +103,7 @@ def _read(path: str, load: bool):
         made.close()
     if load:
         variables = {name: _complex(value) for name, value in variables.items()}
-    told = variables["pressure"].attrs if "pressure" in variables else {}
-    if "time_start" in told and "sample" in whole.sizes and np.ndim(told["time_start"]) == 0:
+    if timed:
         variables["time"] = xr.Variable(*datasets.times(told, whole.sizes["sample"]))
     coords = {name: value for name, value in variables.items()
               if value.dims == (name,) or (name, value.dims) == ("time", ("sample",))}

