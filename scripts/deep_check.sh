@@ -150,13 +150,6 @@ else
   verdict serve FAILED "$(tail -n 1 <<<"$said")"
 fi
 
-# The page of asdic plot --html in headless Chromium.
-if said=$(/usr/bin/python3 tests/python/browser/page_in_browser.py 2>&1); then
-  verdict browser good "$(grep '^Ran' <<<"$said")"
-else
-  verdict browser FAILED "$(grep '^FAIL\|^ERROR\|Error' <<<"$said" | head -n 3 | tr '\n' ' ')"
-fi
-
 # Debian packages: what lintian says of them, and a clean Debian in which they are installed and used.
 cd "$root"
 if said=$(scripts/packages.sh "$folder/packages" 2>&1); then

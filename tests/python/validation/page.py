@@ -3,7 +3,7 @@
 
     ASDIC=build/ci/bin/asdic page.py
 
-How it looks and answers in a browser is tested by tests/python/browser/page_in_browser.py.
+How it looks and answers in a browser is tested by tests/python/validation/page_in_browser.py.
 """
 import base64
 import html.parser

@@ -4,7 +4,7 @@ network, draws, tells the file's values, zooms, links, is dark where that is wis
 
     ASDIC=build/ci/bin/asdic page_in_browser.py [FOLDER for screenshots]
 
-Needs Debian's chromium, chromium-driver and python3-selenium; scripts/deep_check.sh runs it.
+Needs Debian's chromium, chromium-driver and python3-selenium. ASDIC_DEEP=1 runs all cases.
 """
 import base64
 import json
@@ -17,19 +17,24 @@ import tempfile
 import unittest
 from pathlib import Path
 
-import numpy as np
-from selenium import webdriver
-from selenium.webdriver.chrome.service import Service
-from selenium.webdriver.common.action_chains import ActionChains
-from selenium.webdriver.common.actions.wheel_input import ScrollOrigin
-from selenium.webdriver.common.by import By
-from selenium.webdriver.common.keys import Keys
+if not shutil.which("chromium") or not shutil.which("chromedriver"):
+    print("no chromium or chromedriver here (Debian: chromium chromium-driver python3-selenium)")
+    sys.exit(77)
+
+import numpy as np  # noqa: E402
+from selenium import webdriver  # noqa: E402
+from selenium.webdriver.chrome.service import Service  # noqa: E402
+from selenium.webdriver.common.action_chains import ActionChains  # noqa: E402
+from selenium.webdriver.common.actions.wheel_input import ScrollOrigin  # noqa: E402
+from selenium.webdriver.common.by import By  # noqa: E402
+from selenium.webdriver.common.keys import Keys  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[3]
-sys.path.insert(0, str(ROOT / "python"))
+sys.path[:0] = [str(ROOT / "python"), str(ROOT / "tests/support")]
 
 from asdic_pictures import bearing_time, levels, processed  # noqa: E402
 from asdic_pictures.data import PingFile  # noqa: E402
+from deep import in_depth  # noqa: E402
 
 ASDIC = os.environ["ASDIC"]
 FLAGS = ("--headless --no-sandbox --disable-gpu --disable-quic --no-first-run "
@@ -166,6 +171,7 @@ class Browser(unittest.TestCase):
             inside = image[int(top): int(top + high), int(left): int(left + wide), :3]
             self.assertGreater(inside.std(), 4.0, name)
 
+    @in_depth("a page is loaded, drawn and linked")
     def test_no_peak_falls_between_pixels(self):
         """Drawn small, a panel still shows the colour of its largest value."""
         self.open("deep", wide=500)
@@ -181,6 +187,7 @@ class Browser(unittest.TestCase):
             image = self.pixels(name)[int(top): int(top + high), int(left): int(left + wide), :3]
             self.assertTrue((image == np.array(colour, np.uint8)).all(axis=-1).any(), (name, colour))
 
+    @in_depth("a page is loaded, drawn and linked")
     def test_tells_the_values_of_the_file(self):
         self.open("deep")
         with PingFile(self.folder / "deep.h5") as file:
@@ -214,6 +221,7 @@ class Browser(unittest.TestCase):
         expected = total[int(round((at - time[0]) / np.median(np.diff(time))))]
         self.assertIn(f"measured, all frequencies: {expected:.1f} dB re 1 µPa", said)
 
+    @in_depth("a page is loaded, drawn and linked")
     def test_range_and_bearing_of_the_target(self):
         self.open("deep")
         said = "\n".join(self.move("Range and bearing", 25000 * np.sin(np.radians(70)),
@@ -228,6 +236,7 @@ class Browser(unittest.TestCase):
         self.assertAlmostEqual(np.interp(at, m.time, m.range) / 1e3, off, delta=0.15)
         self.assertAlmostEqual(self.js("return S.time"), at, 2)
 
+    @in_depth("a page is loaded, drawn and linked")
     def test_wheel_drag_and_double_click(self):
         self.open("deep")
         stage = self.panel("Bearing–time")
@@ -280,6 +289,7 @@ class Browser(unittest.TestCase):
     def overlay(self, name):
         return self.of(name, "p.over.toDataURL()")
 
+    @in_depth("a page is loaded, drawn and linked")
     def test_links_a_time(self):
         self.open("deep")
         names = ("Rays", "Range and bearing", "Doppler–time", "Levels", "Spectrogram")
@@ -294,6 +304,7 @@ class Browser(unittest.TestCase):
         self.key(Keys.ESCAPE)
         self.assertIsNone(self.js("return S.time"))
 
+    @in_depth("a page is loaded, drawn and linked")
     def test_keys_alone(self):
         self.open("deep")
         self.js("panels.find((p) => p.shown && p.name === 'Levels').stage.focus()")
@@ -313,6 +324,7 @@ class Browser(unittest.TestCase):
         self.assertEqual(self.js("return [S.target, S.pinned]"), [None, False])
         self.assertIn("Arrows", self.js("return document.activeElement.getAttribute('aria-label')"))
 
+    @in_depth("a page is loaded, drawn and linked")
     def test_light_and_dark(self):
         def background():
             told = self.js("return getComputedStyle(document.body).backgroundColor")
@@ -329,6 +341,7 @@ class Browser(unittest.TestCase):
         self.browser.find_element(By.ID, "theme").click()
         self.assertLess(max(background()[:3]), 60)
 
+    @in_depth("a page is loaded, drawn and linked")
     def test_narrow_and_wide(self):
         for wide in (380, 1000, 1500, 2200):
             self.open("deep", wide=wide, dark=wide == 380)
@@ -337,6 +350,7 @@ class Browser(unittest.TestCase):
             self.assertGreater(self.of("Bearing–time", "p.box.w"), 150)
             self.shot(f"deep_{wide}")
 
+    @in_depth("a page is loaded, drawn and linked")
     def test_other_pings(self):
         """Each kind loads without a complaint, and shows what it has."""
         baseband = re.sub(r"(?m)^sample_rate.*$", 'samples = "baseband"',
