@@ -71,6 +71,11 @@ AmbientNoise::AmbientNoise(const Scenario& scenario, const PropagationPaths& pat
                          extent(scenario.arrays[a]), &paths.memory());
   }
   first_channels_.push_back(channels_of(scenario));
+  recorded_power_ = 0.0;  // the mean over all phones of what is made
+  for (std::size_t a = 0; a < arrays_.size(); ++a)
+    recorded_power_ += arrays_[a].power() *
+                       static_cast<double>(first_channels_[a + 1] - first_channels_[a]) /
+                       static_cast<double>(first_channels_.back());
 }
 
 void AmbientNoise::add(const RecordSamples& record, std::int64_t later) const {

@@ -69,6 +69,12 @@ BlockNoise::BlockNoise(const std::function<double(double)>& density, double samp
   if (coherence != NoiseCoherence::independent && phones_ > 1) factors_ = factors_of(phones);
 }
 
+double BlockNoise::power() const noexcept {
+  double sum = 0.0;
+  for (const double scale : scale_) sum += scale * scale;
+  return complex_ ? sum : 4.0 * sum;  // scale² is S·Δf, of real pressure S·Δf/4
+}
+
 std::shared_ptr<const CoherenceFactors> BlockNoise::factors_of(std::span<const Vec3> phones) const {
   return CoherenceFactors::recalled(memory_, coherence_, directions_, phones, sound_speed_, lowest_,
                                     step_, bins_);

@@ -57,6 +57,9 @@ class BlockNoise {
            const ShapeAt& shape_at) const;
 
   [[nodiscard]] std::size_t block() const noexcept { return block_; }  ///< N
+  /// Mean square of the pressure that it makes [Pa²]: the density summed over the bins above 0.
+  /// What lies below the first of them, fs/N, is not made.
+  [[nodiscard]] double power() const noexcept;
   /// Of the coherence; null where phones are independent.
   [[nodiscard]] const CoherenceFactors* factors() const noexcept { return factors_.get(); }
 

@@ -98,6 +98,24 @@ TEST(BlockNoise, HasTheLawsSpectrum) {
 
 // The variance at every place of a block: 2000 realisations of 64 samples at its edge and middle.
 // Samples of white noise are independent: 5σ of a variance of 128 000 is 5·√(2/128000) = 2 %.
+// What stands in a file as the level of the noise is what its samples have: of a steep spectrum,
+// too, whose lowest hertz no block holds (of Wenz's they have more power than all the rest). The
+// power is that of about 4 Hz over 262 s and 4 phones: 1/√4200 or 0.07 dB, five times that.
+TEST(BlockNoise, TellsThePowerThatItMakes) {
+  for (const double carrier : {0.0, 1500.0}) {
+    Listener listener{.carrier = carrier, .law = WenzNoise{}};
+    listener.coherence = NoiseCoherence::independent;
+    if (carrier > 0.0) listener.rate = 1000.0;
+    const std::size_t samples = std::size_t{1} << (carrier > 0.0 ? 18 : 20);
+    const std::vector<float> rows = listener.record(samples);
+    double sum = 0.0;
+    for (const double x : rows) sum += x * x;
+    // Of baseband the mean of re² and im² is |b|²/2, which is the pressure's mean square.
+    const double measured = sum / static_cast<double>(rows.size());
+    EXPECT_NEAR(db_from_power(measured / listener.noise().power()), 0.0, 0.35) << carrier;
+  }
+}
+
 TEST(BlockNoise, HasTheSameVarianceAtEverySampleOfABlock) {
   Listener l;
   l.phones.resize(1);
