@@ -56,6 +56,11 @@ TomlValue read_document(std::string_view text, const std::filesystem::path& path
     throw InputError({.where = path.string(),
                       .got = "an empty file",
                       .expected = "a scenario (docs/formats/scenario.md)"});
+  if (text.starts_with("\x89HDF"))
+    throw InputError(
+        {.where = path.string(),
+         .got = "an HDF5 file",
+         .expected = "a scenario (docs/formats/scenario.md); asdic info tells of HDF5"});
   TomlValue document = parse_toml(text, path.string());
   for (const std::string& assignment : overrides)  // which file to include comes first …
     if (assignment.starts_with("include=")) apply_override(document, assignment);

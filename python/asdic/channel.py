@@ -5,11 +5,26 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from . import _core, datasets
+from . import _core, datasets, described
 from .told import tell
 
 if TYPE_CHECKING:
     import xarray as xr
+
+
+def _real(signal) -> np.ndarray:
+    """[n] pressure. Raises InputError for what is none."""
+    values = np.asarray(signal)
+    if np.iscomplexobj(values):
+        raise described.made("signal", "complex numbers", "real pressure: of complex baseband b about "
+                             "a carrier f that is (b * np.exp(2j*np.pi*f*t)).real")
+    if values.ndim != 1:
+        raise described.made("signal", f"an array of shape {values.shape}", "one of shape (n,)")
+    values = values.astype(float)
+    if not np.isfinite(values).all():
+        raise described.made("signal", f"{values[~np.isfinite(values)][0]} at sample "
+                             f"{int(np.argmin(np.isfinite(values)))}", "finite numbers [Pa]")
+    return values
 
 
 class Channel:
@@ -67,8 +82,9 @@ class Channel:
         Raises InputError for a signal that is longer than the channel. Warns where absorption within
         the signal's band differs by more than 1 dB from that of the channel's frequency.
         """
-        pressure, first, told = _core.through(self._scenario._core, self._core,
-                                              np.asarray(signal, float), float(sample_rate))
+        sample_rate = described.number("sample_rate", sample_rate, "Hz")
+        pressure, first, told = _core.through(self._scenario._core, self._core, _real(signal),
+                                              sample_rate)
         tell(told)
         begin = int(round(first * sample_rate))
         if start is not None or samples is not None:

@@ -3,6 +3,8 @@ from __future__ import annotations
 
 import difflib
 import functools
+import operator
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -149,7 +151,12 @@ def check(key: str, choices: list, value) -> None:
     if not choices or value is None:
         return
     value = measured(choices, value)
-    if not isinstance(value, (str, bool)) and hasattr(value, "__float__"):
+    if isinstance(value, str) and all(one.kind in ("number", "whole") for one in choices) \
+            and not any(value in one.words for one in choices):
+        unit = choices[0].unit
+        raise made(key, f'"{value}"', f"a number{f' [{unit}], or one with its unit' if unit else ''}")
+    if not isinstance(value, (str, bool)) and hasattr(value, "__float__") \
+            and getattr(value, "ndim", 0) == 0:
         ranged = [one for one in choices if one.kind in ("number", "whole")]
         asked = float(value)
         fits = [one for one in ranged if one.lowest <= asked <= one.highest
@@ -162,3 +169,40 @@ def check(key: str, choices: list, value) -> None:
         if all(one.kind in ("word", "number", "whole") for one in choices) and words \
                 and value not in words:
             raise made(key, f'"{value}"', "one of " + ", ".join(f'"{w}"' for w in words))
+
+
+def check_within(path: str, place: str, value) -> None:
+    """Refuses keys that a table does not have, and numbers out of range, in dictionaries."""
+    if isinstance(value, Mapping):
+        inside = place if keys_of(place) else place + "[]"
+        known = keys_of(inside)
+        for name, inner in value.items() if known else ():
+            if name not in known:
+                near = difflib.get_close_matches(str(name), known, 3) or known
+                raise made(f"{path}.{name}", "no such setting", "one of " + ", ".join(near))
+            check(f"{path}.{name}", settings().get(f"{inside}.{name}", []), inner)
+            check_within(f"{path}.{name}", f"{inside}.{name}", inner)
+    elif isinstance(value, (list, tuple)):
+        for i, one in enumerate(value):
+            if isinstance(one, Mapping):
+                check_within(f"{path}.{i}", place, one)
+
+
+def number(key: str, value, unit: str, optional: bool = False):
+    """An argument that is a number, or a text with its unit, "6km". Raises InputError."""
+    if value is None and optional:
+        return None
+    found = _core.measured(value, unit) if isinstance(value, str) else value
+    try:
+        return float(found)
+    except (TypeError, ValueError):
+        shown = f'"{value}"' if isinstance(value, str) else f"a {type(value).__name__}"
+        raise made(key, shown, f"a number [{unit}]" if unit else "a number") from None
+
+
+def whole(key: str, value) -> int:
+    """An argument that counts. Raises InputError."""
+    try:
+        return operator.index(value)
+    except TypeError:
+        raise made(key, f"{value!r}", "a whole number") from None

@@ -14,6 +14,19 @@ def _names(table) -> list[str]:
     return [str(name).lower() for name in table.columns]
 
 
+def _column(key: str, table, name: str) -> list:
+    """The numbers of a column. Raises InputError for a row without one."""
+    import pandas as pd
+
+    values = pd.to_numeric(table[name], errors="coerce")
+    missing = values.isna().to_numpy()
+    if missing.any():
+        row = int(missing.argmax())
+        raise described.made(f"{key}: {name}, row {row}", str(table[name].iloc[row]),
+                             "a number; dropna() leaves such rows out")
+    return values.astype(float).tolist()
+
+
 def _pairs(key: str, value, first: str, second: str) -> tuple[list, list]:
     """Two columns out of pairs [n, 2], a Series over `first`, or a DataFrame with both."""
     if hasattr(value, "columns"):  # pandas
@@ -23,9 +36,10 @@ def _pairs(key: str, value, first: str, second: str) -> tuple[list, list]:
             if name not in table.columns:
                 raise described.made(key, f"columns {', '.join(table.columns)}",
                                      f"{first} and {second}")
-        return table[first].tolist(), table[second].tolist()
+        return _column(key, table, first), _column(key, table, second)
     if hasattr(value, "index") and hasattr(value, "to_numpy"):  # a Series
-        return np.asarray(value.index, float).tolist(), value.to_numpy(float).tolist()
+        table = value.rename(second).rename_axis(first).reset_index()
+        return _column(key, table, first), _column(key, table, second)
     pairs = np.asarray(value, float)
     if pairs.ndim != 2 or pairs.shape[1] != 2:
         raise described.made(key, f"an array of shape {pairs.shape}",
@@ -51,11 +65,14 @@ def sound_speed(value) -> dict:
         raise described.made("sound_speed", f"a DataArray over {', '.join(map(str, value.dims))}",
                              "one over depth, or over range and depth")
     if hasattr(value, "columns") and {"temperature", "salinity"} <= set(_names(value)):
+        if "speed" in _names(value):
+            raise described.made("sound_speed", "columns speed, temperature and salinity",
+                                 "speed, or temperature and salinity")
         table = (value if "depth" in _names(value) else value.reset_index())
         table = table.rename(columns=str).rename(columns=str.lower)
-        return {"kind": "temperature-salinity", "depth": table["depth"].tolist(),
-                "temperature": table["temperature"].tolist(),
-                "salinity": table["salinity"].tolist()}
+        return {"kind": "temperature-salinity",
+                **{name: _column("sound_speed", table, name)
+                   for name in ("depth", "temperature", "salinity")}}
     depth, speed = _pairs("sound_speed", value, "depth", "speed")
     return {"kind": "table", "depth": depth, "speed": speed}
 

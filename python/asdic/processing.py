@@ -13,9 +13,11 @@ from .told import tell
 if TYPE_CHECKING:
     import pandas as pd
 
-OPTIONS = ("mvdr", "hann_shading", "max_speed", "split_window", "across_beams", "guard_cells",
-           "reference_cells", "false_alarm_probability", "start", "stop", "target_depth",
-           "range_speed")
+#: their units; bool: on or off
+OPTIONS = {"mvdr": bool, "hann_shading": bool, "max_speed": "m/s", "split_window": bool,
+           "across_beams": bool, "guard_cells": "", "reference_cells": "",
+           "false_alarm_probability": "", "start": "s", "stop": "s", "target_depth": "m",
+           "range_speed": "m/s"}
 
 
 UNITS = {"time": "s", "bearing_deg": "degrees", "elevation_deg": "degrees", "snr_db": "dB",
@@ -68,7 +70,16 @@ def process(source, progress=None, **options) -> Processed:
     for name in options:
         if name not in OPTIONS:
             raise described.made(name, "no such option", "one of " + ", ".join(OPTIONS))
-    given = {name: value for name, value in options.items() if value is not None}
+    given = {}
+    for name, value in options.items():
+        if value is None:
+            continue
+        if OPTIONS[name] is not bool:
+            given[name] = described.number(name, value, OPTIONS[name])
+        elif isinstance(value, (bool, np.bool_)):
+            given[name] = bool(value)
+        else:
+            raise described.made(name, repr(value), "True or False")
     if isinstance(source, (str, os.PathLike)):
         found = _core.process_file(os.fspath(source), given, progress)
     else:

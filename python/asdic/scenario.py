@@ -83,6 +83,7 @@ class _Table:
             return
         value = oceans.setting(place, value)
         described.check(path, described.settings().get(place, []), value)
+        described.check_within(path, place, value)
         self._core.set(path, value)
 
     def __delattr__(self, name: str) -> None:
@@ -262,6 +263,8 @@ class Scenario(_Table):
         """Sections by their names; a table is put into one that is there."""
         for name, value in sections.items():
             path, place = self._of(name)
+            described.check(path, described.settings().get(place, []), value)
+            described.check_within(path, place, value)
             if isinstance(value, Mapping) and isinstance(self._get(path), dict):
                 for key, inner in value.items():
                     self._core.set(f"{path}.{key}", oceans.setting(f"{place}.{key}", inner))
@@ -324,8 +327,12 @@ class Scenario(_Table):
     def validate(self, progress=None) -> list[str]:
         """Checks everything, as ``asdic validate``. → warnings: what to know before trusting a number.
 
-        Raises InputError at the first fault.
+        Of an ocean alone, without a sonar and a [run], that ocean. Raises InputError at the first fault.
         """
+        if self._core.has("environment") and not any(
+                self._core.has(name) for name in ("platform", "run", "pulse", "transmitter", "array")):
+            return self._with_run(frequency=1000.0, source_depth=0.0, depths=[0.0],
+                                  ranges=[1.0])._core.validate(progress)
         return self._core.validate(progress)
 
     @property
@@ -396,11 +403,16 @@ class Scenario(_Table):
         if (range is None) != (depth is None):
             raise described.made("depth" if depth is None else "range", "nothing",
                                  "range and depth, which go together")
+        ping = described.whole("ping", ping)
         if range is None:
             columns, legs = _core.legs(self._core, ping)
             tell(self._core.warnings())
             return (columns, legs) if arrays else \
                 datasets.arrivals(columns, legs, warnings=self.warnings)
+        range, depth = described.number("range", range, "m"), described.number("depth", depth, "m")
+        source_depth = described.number("source_depth", source_depth, "m", True)
+        frequency = described.number("frequency", frequency, "Hz", True)
+        bearing_deg = described.number("bearing_deg", bearing_deg, "degrees", True)
         core = self._core
         if not core.has("platform") and not core.has("run"):
             core = self._with_run(frequency=frequency, source_depth=source_depth, depths=[depth],
@@ -421,6 +433,8 @@ class Scenario(_Table):
         path_length [m], surface_bounces, bottom_bounces, turns, and the arrays range, depth [m] and
         time [s].
         """
+        range = described.number("range", range, "m")
+        source_depth = described.number("source_depth", source_depth, "m", True)
         core = self._core
         if not core.has("platform") and not core.has("run"):
             core = self._with_run(frequency=1000.0, source_depth=source_depth, depths=[0.0],
@@ -525,6 +539,7 @@ class Scenario(_Table):
 
         Raises InputError; KeyboardInterrupt by Ctrl-C.
         """
+        number = described.whole("number", number)
         pinger = _core.Pinger(self._core, progress)
         tell(pinger.warnings)
         return datasets.ping(self, pinger.ping(number), pinger.warnings)
@@ -558,7 +573,10 @@ class Scenario(_Table):
         Direct sound with what surface and bottom mirror; no target, no scatterer.
         """
         number, receiver = self._number("transmitter", transmitter), self._number("array", array)
-        first = number + 1 if ping is None else ping
+        first = number + 1 if ping is None else described.whole("ping", ping)
+        duration = described.number("duration", duration, "s", True)
+        step = described.number("step", step, "s")
+        frequency = described.number("frequency", frequency, "Hz", True)
         found = Channel(self, _core.channel(self._core, first, receiver, duration, step, frequency,
                                             held))
         tell(self.warnings)

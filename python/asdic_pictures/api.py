@@ -73,6 +73,13 @@ def select(data, name: str, row: int, array) -> str | None:
     return reason
 
 
+def _checked(limits):
+    """(low, high) [dB], or None. Raises InputError."""
+    if limits is not None and not (len(limits) == 2 and limits[0] < limits[1]):
+        raise InputError("limits", f"{limits}", "(low, high) in dB, low below high")
+    return limits
+
+
 def of_ping(name: str, source, axes=None, *, ping=None, array=None, limits=None, theme=None):
     """A picture of a ping by its name. Raises InputError where there is nothing to draw."""
     with opened(source) as data, _style.look(theme):
@@ -80,7 +87,7 @@ def of_ping(name: str, source, axes=None, *, ping=None, array=None, limits=None,
         reason = select(data, name, row, array)
         if reason:
             raise InputError(data.path, reason, f"something to draw in {name}")
-        return tagged(module(name).draw(data, row, axes=axes, limits=limits), **data.tags(row))
+        return tagged(module(name).draw(data, row, axes=axes, limits=_checked(limits)), **data.tags(row))
 
 
 def of_result(found, wanted: str, axes=None, *, limits=None, theme=None, **options):
@@ -92,7 +99,7 @@ def of_result(found, wanted: str, axes=None, *, limits=None, theme=None, **optio
     if reason := draws.nothing_to_show(result):
         raise InputError(_source.name_of(found), reason, f"something to draw in {name}")
     with _style.look(theme):
-        return tagged(draws.draw(result, axes=axes, limits=limits, **options), **result.tags)
+        return tagged(draws.draw(result, axes=axes, limits=_checked(limits), **options), **result.tags)
 
 
 def of_scene(name: str, source, axes=None, *, limits=None, theme=None):
@@ -102,7 +109,7 @@ def of_scene(name: str, source, axes=None, *, limits=None, theme=None):
     if reason := nothing(scene):
         raise InputError(_source.name_of(source), reason, f"something to draw in {name}")
     with _style.look(theme):
-        return tagged(draw(scene, axes=axes, limits=limits), **scene.tags)
+        return tagged(draw(scene, axes=axes, limits=_checked(limits)), **scene.tags)
 
 
 def of_study(source, only=None, axes=None, *, theme=None) -> dict:
@@ -122,5 +129,5 @@ def of_two(a, b, names=("A", "B"), axes=None, *, floor: float = 120.0, limits=No
     from . import comparison
     first, second = _results.read(a), _results.read(b)
     with _style.look(theme):
-        return tagged(comparison.draw(first, second, list(names), floor, axes=axes, limits=limits),
+        return tagged(comparison.draw(first, second, list(names), floor, axes=axes, limits=_checked(limits)),
                       **first.tags)

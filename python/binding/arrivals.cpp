@@ -98,7 +98,7 @@ py::tuple find_legs(const Scenario& scenario, int ping) {
       target.push_back(one.target);
       array.push_back(one.array);
       path.push_back(static_cast<std::int32_t>(i));
-      bearing.push_back(degrees(one.bearing));
+      bearing.push_back(bearing_deg(one.bearing));
       range.push_back(one.range);
     }
   }

@@ -5,6 +5,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <cmath>
 #include <functional>
 #include <utility>
 #include <vector>
@@ -49,6 +50,12 @@ py::array column(const std::vector<Item>& items, const Get& get) {
   T* to = made.mutable_data();
   for (const Item& item : items) *to++ = static_cast<T>(get(item));
   return made;
+}
+
+/// A true bearing as files tell it: 0 to 360°. NaN stays.
+inline double bearing_deg(double bearing) {
+  const double turned = std::fmod(degrees(bearing), 360.0);
+  return turned < 0.0 ? turned + 360.0 : turned;
 }
 
 }  // namespace asdic::python

@@ -21,16 +21,16 @@ py::dict echoes_of(const Ping& ping) {
   const std::vector<Echo>& all = ping.echoes();
   const auto whole = [&](auto get) { return column<std::int32_t>(all, get); };
   const auto number = [&](auto get) { return column<double>(all, get); };
-  return py::dict(
-      "target"_a = whole([](const Echo& e) { return e.target; }),
-      "array"_a = whole([](const Echo& e) { return e.array; }),
-      "delay"_a = number([](const Echo& e) { return e.delay; }),
-      "struck"_a = number([](const Echo& e) { return e.struck; }),
-      "doppler_factor"_a = number([](const Echo& e) { return e.doppler; }),
-      "level_db"_a = number([](const Echo& e) { return e.level_db; }),
-      "arrival_elevation_deg"_a =
-          number([](const Echo& e) { return degrees(e.arrival_elevation); }),
-      "arrival_bearing_deg"_a = number([](const Echo& e) { return degrees(e.arrival_bearing); }));
+  return py::dict("target"_a = whole([](const Echo& e) { return e.target; }),
+                  "array"_a = whole([](const Echo& e) { return e.array; }),
+                  "delay"_a = number([](const Echo& e) { return e.delay; }),
+                  "struck"_a = number([](const Echo& e) { return e.struck; }),
+                  "doppler_factor"_a = number([](const Echo& e) { return e.doppler; }),
+                  "level_db"_a = number([](const Echo& e) { return e.level_db; }),
+                  "arrival_elevation_deg"_a =
+                      number([](const Echo& e) { return degrees(e.arrival_elevation); }),
+                  "arrival_bearing_deg"_a =
+                      number([](const Echo& e) { return bearing_deg(e.arrival_bearing); }));
 }
 
 py::array phones_of(const Ping& ping) {

@@ -36,7 +36,8 @@ py::dict shown(const Processed& all) {
     py::list of_it;
     for (const Place& p : d.places)
       of_it.append(py::dict("position"_a = p.position, "range"_a = p.range,
-                            "bearing_deg"_a = degrees(p.bearing), "range_rate"_a = p.range_rate));
+                            "bearing_deg"_a = bearing_deg(p.bearing),
+                            "range_rate"_a = p.range_rate));
     places.append(of_it);
   }
   for (const Track& track : all.tracks) {
@@ -55,7 +56,7 @@ py::dict shown(const Processed& all) {
           "array"_a = whole([](const Detection& d) { return d.array; }),
           "time"_a = number([](const Detection& d) { return d.time; }),
           "doppler_factor"_a = number([](const Detection& d) { return d.doppler; }),
-          "bearing_deg"_a = number([](const Detection& d) { return degrees(d.bearing); }),
+          "bearing_deg"_a = number([](const Detection& d) { return bearing_deg(d.bearing); }),
           "elevation_deg"_a = number([](const Detection& d) { return degrees(d.elevation); }),
           "snr_db"_a = number([](const Detection& d) { return d.snr_db; }),
           "excess_db"_a = number([](const Detection& d) { return d.excess_db; }),

@@ -170,6 +170,68 @@ class Oceans(unittest.TestCase):
                 asdic.Scenario(sound_speed=wrong)
 
 
+class Faults(unittest.TestCase):
+    """What is wrong is told by its name, before anything is computed."""
+
+    def told(self, call, *words):
+        with self.assertRaises(asdic.InputError) as caught:
+            call()
+        for word in words:
+            self.assertIn(word, str(caught.exception))
+
+    def test_arguments(self):
+        s = asdic.Scenario(SCENARIOS / "modem.toml")
+        self.told(lambda: s.arrivals(range="6 furlongs", depth=50), "range", "furlongs", "[m]")
+        self.told(lambda: s.ping(1.5), "number", "1.5", "whole")
+        self.told(lambda: s.channel(duration=[1, 2]), "duration", "list")
+        self.told(lambda: asdic.process("none.h5", target_depth="deep"), "target_depth", "[m]")
+        self.told(lambda: asdic.process("none.h5", mvdr="yes"), "mvdr", "True or False")
+        np.testing.assert_array_equal(s.arrivals(range="0.5km", depth=20.0).delay,
+                                      s.arrivals(range=500.0, depth=20.0).delay)
+
+    def test_signals(self):
+        channel = asdic.Scenario(SCENARIOS / "modem.toml").channel(duration=0.5)
+        good = np.zeros(200)
+        for bad, word in ((good + 0j, "complex"), (good.reshape(2, 100), "shape (2, 100)"),
+                          (np.where(np.arange(200) == 7, np.nan, good), "nan at sample 7")):
+            self.told(lambda: channel(bad, 48e3), "signal", word)
+
+    def test_settings(self):
+        s = asdic.Scenario(SCENARIOS / "deep_ocean.toml")
+
+        def duration():
+            s.pulse.duration = "250 sec"
+
+        def pulse():
+            s.pulse = {"kind": "cw", "freq": 3e3}
+
+        self.told(duration, "pulse.duration", "250 sec", "[s]")
+        self.told(pulse, "pulse.freq", "frequency")
+        self.told(lambda: asdic.Scenario(pulse={"kind": "cw", "duration": -1.0}), "pulse.duration")
+        self.told(lambda: asdic.Scenario(targets=[{"rnage": 1.0}]), "target.0.rnage", "range")
+        s.platforms[0].velocity = np.array([1.0, 2.0, 0.0])
+        self.assertEqual(s.platforms[0].velocity, [1.0, 2.0, 0.0])
+
+    def test_casts_with_gaps(self):
+        for gap in (None, np.nan, pd.NA):
+            cast = pd.DataFrame({"depth": [0.0, 10.0, 20.0], "speed": [1500.0, gap, 1490.0]})
+            self.told(lambda: asdic.Scenario(sound_speed=cast), "speed, row 1", "dropna")
+        cast["temperature"] = cast["salinity"] = 10.0
+        self.told(lambda: asdic.Scenario(sound_speed=cast), "speed, or temperature and salinity")
+
+    def test_a_sea_alone(self):
+        s = asdic.Scenario(sound_speed=1500.0, bathymetry=100.0)
+        self.assertEqual(s.validate(), [])
+        with self.assertRaises(asdic.InputError):
+            asdic.Scenario(sound_speed=[[0, 1500], [10, -3]], bathymetry=100.0).validate()
+
+    def test_a_ping_is_no_scenario(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = os.path.join(folder, "p.h5")
+            asdic.Scenario(SCENARIOS / "modem.toml").write(file)
+            self.told(lambda: asdic.Scenario(file), "an HDF5 file", "a scenario")
+
+
 class Warnings(unittest.TestCase):
     """What to know before trusting a number is told wherever a number is had."""
 
@@ -354,6 +416,11 @@ class Pings(unittest.TestCase):
         run("process", self.path("c.h5"), "-q")
         file = asdic.open(self.path("c.h5"))
         self.assertEqual(file.time.dims, ("sample",))
+        truth = s.ping()
+        for name in ("delay", "level_db", "doppler_factor", "arrival_bearing_deg"):
+            np.testing.assert_allclose(truth[f"echoes/{name}"], file[f"echoes/{name}"], rtol=1e-12)
+        bearing = a.detections.bearing_deg
+        self.assertTrue(((bearing >= 0.0) & (bearing < 360.0) | bearing.isna()).all())
         maps = "processed/maps/array_0"
         self.assertEqual(file.asdic.group(maps).sizes["time"], file.sizes[maps + "/time"])
         with self.assertRaises(asdic.InputError):
