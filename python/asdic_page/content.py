@@ -301,7 +301,7 @@ def detection_images(data, row, found) -> list:
                       "power over the background", "dB", limits)
         beams |= {"name": "Detections", "found": numbers(m.angle_of(t), 8),
                   "about": "Power over the background in every beam, the largest of all Doppler "
-                           "filters. Circles: found. Crosses: true echoes."}
+                           "filters. Circles: found. Marks: true echoes."}
         made.append(beams)
     if len(m.doppler) > 1:
         shift = data.centre_frequency * (m.doppler - 1.0)
@@ -311,7 +311,7 @@ def detection_images(data, row, found) -> list:
         doppler |= {"name": "Doppler–time",
                     "found": numbers(data.centre_frequency * (t["doppler_factor"] - 1.0), 7),
                     "about": "Power over the background in every Doppler filter, the largest of "
-                             "all beams. Circles: found. Crosses: true echoes."}
+                             "all beams. Circles: found. Marks: true echoes."}
         made.append(doppler)
     for panel in made:
         for e in data.echoes(row):

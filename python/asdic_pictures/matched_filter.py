@@ -103,10 +103,13 @@ def draw(data, ping, axes=None, limits=None):
     if best:
         near = axes[1, 0]
         span = zoom(data, best, last)
+        loudest = best.level_db.max()
         for db, colour, _ in lines:
             shown = (time >= span[0]) & (time <= span[1])
             near.plot(time[shown], db[shown], color=colour, lw=1.1)
-        near.set_ylim(whole.get_ylim())
+            loudest = max(loudest, db[shown].max(initial=-np.inf))
+        low, high = whole.get_ylim()
+        near.set_ylim(min(low, best.level_db.max() - 10.0), min(high, loudest + 8.0))
         for echo in echoes:
             mine = (echo.delay >= span[0]) & (echo.delay <= span[1])
             near.plot(echo.delay[mine], echo.level_db[mine], ls="none", marker="o", ms=8, mew=1.5,
@@ -130,7 +133,8 @@ def mark_edges(axes, echoes) -> list:
     """
     handles = []
     for echo in echoes:
-        shown = echo.delay[echo.strong(*axes.get_xlim())]
+        first, last = axes.get_xlim()
+        shown = style.told_apart(echo.delay[echo.strong(first, last)], last - first)
         if shown.size:
             axes.plot(shown, np.full(shown.size, 1.02), transform=axes.get_xaxis_transform(),
                       clip_on=False, zorder=5, **style.truth(echo.target, "v", 7))

@@ -93,7 +93,7 @@ def mark_echoes(axes, echoes, duration: float):
         axes.add_collection(LineCollection(bars, colors=shade, linewidths=5.0, capstyle="butt",
                                            transform=above, clip_on=False, zorder=5),
                             autolim=False)
-        seen = starts[starts >= first]
+        seen = style.told_apart(starts[starts >= first], last - first)
         axes.plot(seen, np.full(seen.size, 1.02), ls="none", marker="|", ms=8, mew=1.1, color=style.INK,
                   transform=above, clip_on=False, zorder=6)
         label = f"{style.name(echo.name)}: true echo, one pulse long"

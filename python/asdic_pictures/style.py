@@ -264,6 +264,17 @@ def legend_below(axes, handles=None, points: float = 40.0, ncol: int = 6, **opti
                   fontsize=2, annotation_clip=False)
 
 
+def told_apart(times, span: float) -> np.ndarray:
+    """Those of many times that strokes can tell apart: none nearer to the one before than 0.6 % of the
+    axis. The first is among them.
+    """
+    kept: list = []
+    for time in np.sort(times):
+        if not kept or time - kept[-1] >= 0.006 * span:
+            kept.append(time)
+    return np.array(kept)
+
+
 def truth(target: int, marker: str, size: float, label: str = "_"):
     """Look of a mark of the truth beside an image or a curve: the target's colour, a thin edge."""
     return dict(ls="none", marker=marker, ms=size, mfc=colour(target), mec=INK, mew=0.35,
