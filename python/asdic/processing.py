@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,11 +14,10 @@ if TYPE_CHECKING:
     import pandas as pd
 
 #: their units; bool: on or off
-OPTIONS = {"mvdr": bool, "hann_shading": bool, "max_speed": "m/s", "split_window": bool,
-           "across_beams": bool, "guard_cells": "", "reference_cells": "",
-           "false_alarm_probability": "", "start": "s", "stop": "s", "target_depth": "m",
-           "range_speed": "m/s"}
-
+OPTIONS: dict[str, Any] = {
+    "mvdr": bool, "hann_shading": bool, "max_speed": "m/s", "split_window": bool,
+    "across_beams": bool, "guard_cells": "", "reference_cells": "", "false_alarm_probability": "",
+    "start": "s", "stop": "s", "target_depth": "m", "range_speed": "m/s"}
 
 UNITS = {"time": "s", "bearing_deg": "degrees", "elevation_deg": "degrees", "snr_db": "dB",
          "excess_db": "dB", "level_db": "dB re 1 µPa", "east": "m", "north": "m", "depth": "m",
