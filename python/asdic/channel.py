@@ -53,6 +53,8 @@ class Channel:
         for name, values in shown.items():
             if isinstance(values, np.ndarray):
                 dims = ("phone", "path", "time")[:values.ndim]
+                if name.endswith("bearing_deg"):
+                    values = values % 360.0  # true bearings as files tell them
                 unit = units.get(name, "degrees" if name.endswith("_deg") else "1")
                 variables[name] = (dims, values, {"units": unit})
         variables["delay"][2]["long_name"] = "from leaving to being received"

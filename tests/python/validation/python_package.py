@@ -468,6 +468,11 @@ class Channels(unittest.TestCase):
         paths = s.channel(duration=1.0).paths
         self.assertEqual(paths.delay.dims, ("phone", "path", "time"))
         self.assertEqual(float(paths.time[-1]), 1.0)
+        bearing = paths.arrival_bearing_deg.values[np.isfinite(paths.arrival_bearing_deg)]
+        self.assertTrue(bearing.size and ((bearing >= 0.0) & (bearing <= 360.0)).all())
+        s.platforms[1].position = [-700.0, 200.0, 0.0]  # to the west
+        west = s.channel(duration=0.1).paths.arrival_bearing_deg
+        self.assertAlmostEqual(float(west[0, 0, 0]), 285.9, delta=3.0)
         with self.assertRaises(asdic.InputError):
             s.channel(duration=0.1)(np.zeros(48000), rate)
         with self.assertRaises(asdic.InputError):
