@@ -3,12 +3,14 @@
 #include <netcdf.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <stdexcept>
 
 #include "core/error.h"
 #include "core/text.h"
+#include "io/climatology/words.h"
 #include "io/files/files_read.h"
 #include "io/files/input_file.h"
 #include "io/hdf5/gate.h"
@@ -19,14 +21,11 @@
 namespace asdic::detail {
 namespace {
 
-constexpr std::size_t longest_axis = 10'000'000;
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+using climatology::lower;
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
+constexpr std::size_t longest_axis = 10'000'000;
+constexpr std::size_t largest_piece = 1'000'000;  // values that are read at a time
+constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 /// A netCDF file, open for reading.
 struct File {
@@ -81,7 +80,11 @@ struct Dimension {
   std::string name{};
   bool known = false;  ///< as one of the axes
   NetcdfGrid::Axis axis{};
-  std::vector<double> values{};  ///< as stored; depth in metres, positive down
+  bool projected = false;           ///< x or y [m], not degrees
+  std::vector<double> values{};     ///< as stored; lengths in metres, depth positive down
+  std::string units{}, calendar{};  ///< of time
+  std::vector<double> spans{};      ///< [2·times] of time, as stored
+  bool every_year = false;          ///< of time
 };
 
 template <class Visit>
@@ -89,16 +92,30 @@ void fields(Dimension& dimension, Visit visit) {
   visit(dimension.name);
   visit(dimension.known);
   visit(dimension.axis);
+  visit(dimension.projected);
   visit(dimension.values);
+  visit(dimension.units);
+  visit(dimension.calendar);
+  visit(dimension.spans);
+  visit(dimension.every_year);
 }
 
 /// What is known of a variable before its values are read.
 struct Variable {
   bool found = false;
-  std::string name{}, units{};
-  std::vector<Dimension> dimensions{};            ///< in the order of the variable
-  std::vector<double> missing_values{}, valid{};  ///< packed
+  std::string name{}, units{}, standard_name{}, long_name{};
+  std::vector<Dimension> dimensions{};                      ///< in the order of the variable
+  std::vector<double> missing_values{};                     ///< packed
+  double least = -std::numeric_limits<double>::infinity();  ///< packed
+  double most = std::numeric_limits<double>::infinity();    ///< packed
   double scale = 1.0, offset = 0.0;
+
+  [[nodiscard]] double unpacked(double packed) const {
+    if (!std::isfinite(packed) || packed < least || packed > most) return missing;
+    for (const double flag : missing_values)  // stored as float, the flag may be a double, or round
+      if (std::abs(packed - flag) <= 1e-6 * std::abs(flag)) return missing;
+    return packed * scale + offset;
+  }
 };
 
 template <class Visit>
@@ -106,39 +123,72 @@ void fields(Variable& variable, Visit visit) {
   visit(variable.found);
   visit(variable.name);
   visit(variable.units);
+  visit(variable.standard_name);
+  visit(variable.long_name);
   visit(variable.dimensions);
   visit(variable.missing_values);
-  visit(variable.valid);
+  visit(variable.least);
+  visit(variable.most);
   visit(variable.scale);
   visit(variable.offset);
 }
 
+/// Metres of a unit of length; nothing for other units.
+std::optional<double> metres_of(const std::string& unit) {
+  const auto is = [&](std::initializer_list<const char*> names) {
+    return std::find(names.begin(), names.end(), unit) != names.end();
+  };
+  if (is({"m", "metre", "metres", "meter", "meters"})) return 1.0;
+  if (is({"km", "kilometre", "kilometres", "kilometer", "kilometers"})) return 1000.0;
+  return std::nullopt;
+}
+
 /// What an axis is by the conventions; its name is asked last.
-std::optional<NetcdfGrid::Axis> axis_of(const File& file, int variable, const std::string& name) {
+struct AxisKind {
+  NetcdfGrid::Axis axis{};
+  bool projected = false;
+};
+std::optional<AxisKind> axis_of(const File& file, int variable, const std::string& name) {
   using Axis = NetcdfGrid::Axis;
   const std::string units = lower(file.text(variable, "units"));
   const std::string standard = lower(file.text(variable, "standard_name"));
   const std::string axis = lower(file.text(variable, "axis"));
   const std::string word = lower(name);
-  if (standard == "longitude" || units.starts_with("degrees_e") || units.starts_with("degree_e") ||
-      axis == "x")
-    return Axis::longitude;
-  if (standard == "latitude" || units.starts_with("degrees_n") || units.starts_with("degree_n") ||
-      axis == "y")
-    return Axis::latitude;
+  const bool length = metres_of(units).has_value();
+  if (standard == "projection_x_coordinate") return AxisKind{Axis::longitude, true};
+  if (standard == "projection_y_coordinate") return AxisKind{Axis::latitude, true};
+  if (standard == "longitude" || units.starts_with("degrees_e") || units.starts_with("degree_e"))
+    return AxisKind{Axis::longitude};
+  if (standard == "latitude" || units.starts_with("degrees_n") || units.starts_with("degree_n"))
+    return AxisKind{Axis::latitude};
+  if (axis == "x") return AxisKind{Axis::longitude, length};
+  if (axis == "y") return AxisKind{Axis::latitude, length};
   if (standard == "time" || axis == "t" || units.find(" since ") != std::string::npos)
-    return Axis::time;
+    return AxisKind{Axis::time};
   if (standard == "depth" || axis == "z" || !file.text(variable, "positive").empty())
-    return Axis::depth;
-  if (word == "lon" || word == "longitude") return Axis::longitude;
-  if (word == "lat" || word == "latitude") return Axis::latitude;
-  if (word == "depth" || word == "lev" || word == "level") return Axis::depth;
-  if (word == "time" || word == "month") return Axis::time;
+    return AxisKind{Axis::depth};
+  if (word == "lon" || word == "longitude") return AxisKind{Axis::longitude};
+  if (word == "lat" || word == "latitude") return AxisKind{Axis::latitude};
+  if (length && (word == "x" || word == "easting")) return AxisKind{Axis::longitude, true};
+  if (length && (word == "y" || word == "northing")) return AxisKind{Axis::latitude, true};
+  if (word == "depth" || word == "lev" || word == "level") return AxisKind{Axis::depth};
+  if (word == "time" || word == "month") return AxisKind{Axis::time};
   return std::nullopt;
 }
 
-/// The side that has the file open, in a child process: it says what a variable is, and gives its
-/// values one by one as they are stored.
+/// Where a part of a variable begins along each of its dimensions, and how many values it has.
+struct Part {
+  std::vector<std::size_t> start{}, count{};
+};
+
+template <class Visit>
+void fields(Part& part, Visit visit) {
+  visit(part.start);
+  visit(part.count);
+}
+
+/// The side that has the file open, in a child process: it says what a variable is, and gives parts
+/// of it as they are stored.
 class VariableReader {
  public:
   VariableReader(const std::filesystem::path& path, const std::vector<std::string>& names)
@@ -146,24 +196,30 @@ class VariableReader {
     find(names);
   }
 
-  /// Nothing asked: the variable. Indices: the value there.
+  /// Nothing asked: the variable. A part: its values.
   [[nodiscard]] std::string answer(std::string_view question) const {
     isolated::Packed out;
     if (question.empty()) {
       out.put(variable_);
       return out.bytes();
     }
-    const auto index = isolated::Unpacked(question).get<std::vector<std::size_t>>();
-    double packed = 0.0;
-    file_.check(nc_get_var1_double(file_.id, id_, index.data(), &packed), variable_.name);
-    out.put(packed);
+    const auto part = isolated::Unpacked(question).get<Part>();
+    std::size_t size = 1;
+    for (const std::size_t n : part.count) size *= n;
+    std::vector<double> values(size);
+    file_.check(
+        nc_get_vara_double(file_.id, id_, part.start.data(), part.count.data(), values.data()),
+        variable_.name);
+    out.put(values);
     return out.bytes();
   }
 
  private:
   void find(const std::vector<std::string>& names);
+  void read_packing();
   void read_dimensions();
   void read_coordinate(Dimension& dimension, int dimension_id);
+  void read_time(Dimension& dimension, int coordinate);
 
   File file_;
   int id_ = -1;
@@ -183,16 +239,44 @@ void VariableReader::find(const std::vector<std::string>& names) {
       variable_.found = true;
       variable_.name = text;
       variable_.units = file_.text(id, "units");
-      for (const char* key : {"missing_value", "_FillValue"})
-        for (const double flag : file_.numbers(id, key)) variable_.missing_values.push_back(flag);
-      variable_.valid = file_.numbers(id, "valid_range");
-      if (const auto scale = file_.numbers(id, "scale_factor"); !scale.empty())
-        variable_.scale = scale[0];
-      if (const auto offset = file_.numbers(id, "add_offset"); !offset.empty())
-        variable_.offset = offset[0];
+      variable_.standard_name = file_.text(id, "standard_name");
+      variable_.long_name = file_.text(id, "long_name");
+      read_packing();
       return read_dimensions();
     }
   }
+}
+
+void VariableReader::read_packing() {
+  for (const char* key : {"missing_value", "_FillValue"})
+    for (const double flag : file_.numbers(id_, key)) variable_.missing_values.push_back(flag);
+  if (const auto scale = file_.numbers(id_, "scale_factor"); !scale.empty())
+    variable_.scale = scale[0];
+  if (const auto offset = file_.numbers(id_, "add_offset"); !offset.empty())
+    variable_.offset = offset[0];
+  nc_type type = NC_NAT;
+  file_.check(nc_inq_vartype(file_.id, id_, &type), variable_.name);
+  if (file_.numbers(id_, "_FillValue").empty()) {
+    if (type == NC_SHORT) variable_.missing_values.push_back(NC_FILL_SHORT);
+    if (type == NC_INT) variable_.missing_values.push_back(NC_FILL_INT);
+    if (type == NC_FLOAT) variable_.missing_values.push_back(static_cast<double>(NC_FILL_FLOAT));
+    if (type == NC_DOUBLE) variable_.missing_values.push_back(NC_FILL_DOUBLE);
+  }
+  // A range of another type than the packed values is one of unpacked values (NUG, attributes).
+  const auto bound = [&](const char* key, std::size_t i) -> std::optional<double> {
+    const auto values = file_.numbers(id_, key);
+    if (values.size() <= i) return std::nullopt;
+    nc_type kind = NC_NAT;
+    if (nc_inq_atttype(file_.id, id_, key, &kind) != NC_NOERR) return std::nullopt;
+    if (kind == type || variable_.scale == 0.0) return values[i];
+    return (values[i] - variable_.offset) / variable_.scale;
+  };
+  const bool pair = file_.numbers(id_, "valid_range").size() == 2;
+  auto least = pair ? bound("valid_range", 0) : bound("valid_min", 0);
+  auto most = pair ? bound("valid_range", 1) : bound("valid_max", 0);
+  if (least && most && *least > *most) std::swap(least, most);  // a negative scale
+  if (least) variable_.least = *least;
+  if (most) variable_.most = *most;
 }
 
 void VariableReader::read_dimensions() {
@@ -223,7 +307,26 @@ void VariableReader::read_dimensions() {
                      [&](const Dimension& d) { return d.known && d.axis == axis; }))
       throw InputError({.where = where,
                         .got = "a variable without longitude and latitude",
-                        .expected = "one on a grid of them"});
+                        .expected = "one on a grid of them, or of x and y with units of length"});
+}
+
+/// Longitudes that jump by the whole circle go on instead.
+void unroll(std::vector<double>& longitudes) {
+  double turn = 0.0;
+  for (std::size_t i = 1; i < longitudes.size(); ++i) {
+    const double step = longitudes[i] + turn - longitudes[i - 1];
+    if (step < -180.0) turn += 360.0;
+    if (step > 180.0) turn -= 360.0;
+    longitudes[i] += turn;
+  }
+}
+
+bool rises_or_falls(const std::vector<double>& values) {
+  if (values.size() == 1) return std::isfinite(values[0]);
+  const bool rising = values.back() > values.front();
+  for (std::size_t i = 1; i < values.size(); ++i)
+    if (!(rising ? values[i] > values[i - 1] : values[i] < values[i - 1])) return false;
+  return std::isfinite(values.front()) && std::isfinite(values.back());
 }
 
 /// The values of the variable that bears a dimension's name.
@@ -234,38 +337,79 @@ void VariableReader::read_coordinate(Dimension& dimension, int dimension_id) {
   file_.check(nc_inq_varndims(file_.id, coordinate, &rank), dimension.name);
   if (rank == 1) file_.check(nc_inq_vardimid(file_.id, coordinate, &along), dimension.name);
   if (along != dimension_id) return;  // a variable that only bears its name
-  const auto axis = axis_of(file_, coordinate, dimension.name);
-  dimension.known = axis.has_value();
-  if (axis) dimension.axis = *axis;
+  const auto kind = axis_of(file_, coordinate, dimension.name);
+  dimension.known = kind.has_value();
   file_.check(nc_get_var_double(file_.id, coordinate, dimension.values.data()), dimension.name);
-  if (axis != NetcdfGrid::Axis::depth) return;
-  const std::string unit = lower(file_.text(coordinate, "units"));
-  const double metres = unit.starts_with("km") || unit.starts_with("kilom") ? 1000.0 : 1.0;
-  const double sign = lower(file_.text(coordinate, "positive")) == "up" ? -1.0 : 1.0;
-  for (double& z : dimension.values) z *= sign * metres;
+  if (!kind) return;
+  const NetcdfGrid::Axis axis = dimension.axis = kind->axis;
+  dimension.projected = kind->projected;
+  if (axis == NetcdfGrid::Axis::time) return read_time(dimension, coordinate);
+  if (axis == NetcdfGrid::Axis::longitude && !kind->projected) unroll(dimension.values);
+  if (axis == NetcdfGrid::Axis::depth || kind->projected) {
+    const std::string unit = lower(file_.text(coordinate, "units"));
+    const double metres = metres_of(unit).value_or(1.0);
+    const bool up = lower(file_.text(coordinate, "positive")) == "up";
+    for (double& z : dimension.values) z *= up ? -metres : metres;
+  }
+  if (!rises_or_falls(dimension.values))
+    throw InputError({.where = file_.path.string() + ": " + dimension.name,
+                      .got = "an axis whose values neither rise nor fall",
+                      .expected = "an axis that does"});
+}
+
+void VariableReader::read_time(Dimension& dimension, int coordinate) {
+  dimension.units = file_.text(coordinate, "units");
+  dimension.calendar = file_.text(coordinate, "calendar");
+  nc_type modulo = NC_NAT;
+  std::size_t size = 0;
+  std::string bounds = file_.text(coordinate, "climatology");
+  dimension.every_year =
+      !bounds.empty() || nc_inq_att(file_.id, coordinate, "modulo", &modulo, &size) == NC_NOERR;
+  if (bounds.empty()) bounds = file_.text(coordinate, "bounds");
+  int id = -1, rank = 0, ids[2] = {-1, -1};
+  if (bounds.empty() || nc_inq_varid(file_.id, bounds.c_str(), &id) != NC_NOERR) return;
+  if (nc_inq_varndims(file_.id, id, &rank) != NC_NOERR || rank != 2) return;
+  std::size_t steps = 0, ends = 0;
+  if (nc_inq_vardimid(file_.id, id, ids) != NC_NOERR ||
+      nc_inq_dimlen(file_.id, ids[0], &steps) != NC_NOERR ||
+      nc_inq_dimlen(file_.id, ids[1], &ends) != NC_NOERR || ends != 2 ||
+      steps != dimension.values.size())
+    return;
+  dimension.spans.resize(2 * steps);
+  file_.check(nc_get_var_double(file_.id, id, dimension.spans.data()), bounds);
 }
 
 }  // namespace
 
 struct NetcdfGrid::Impl {
+  std::filesystem::path path;
   std::unique_ptr<isolated::Child> child;  // a VariableReader; netCDF fails as HDF5 does
   Variable variable;
-  std::vector<double> longitudes, latitudes;  // as stored
-  std::vector<double> depths;                 // increasing
+  std::vector<double> eastings, northings;  // as stored
+  std::vector<double> depths;               // increasing
   bool depths_reversed = false;
+  bool geographic = true;
+  std::vector<Moment> moments, spans;
+  Calendar calendar = Calendar::standard;
+  bool every_year = false;
 
   Impl(const std::filesystem::path& path, const std::vector<std::string>& names);
+  void read_axes();
 
   [[nodiscard]] const Dimension* find(Axis axis) const {
     for (const Dimension& dimension : variable.dimensions)
       if (dimension.known && dimension.axis == axis) return &dimension;
     return nullptr;
   }
+  /// A part as it is stored, unpacked.
+  [[nodiscard]] std::vector<double> read(const Part& part) const;
   [[nodiscard]] double value(std::size_t i, std::size_t j, std::size_t level,
                              std::size_t time) const;
+  [[nodiscard]] double period() const { return geographic ? 360.0 : 0.0; }
 };
 
-NetcdfGrid::Impl::Impl(const std::filesystem::path& path, const std::vector<std::string>& names) {
+NetcdfGrid::Impl::Impl(const std::filesystem::path& path_, const std::vector<std::string>& names)
+    : path(path_) {
   require_file(path, "a netCDF file");
   hdf5::prepare();  // once here, so that children need not
   nc_initialize();
@@ -274,38 +418,58 @@ NetcdfGrid::Impl::Impl(const std::filesystem::path& path, const std::vector<std:
     return [reader](std::string_view question) { return reader->answer(question); };
   });
   variable = isolated::Unpacked(child->ask("")).get<Variable>();
-  if (const Dimension* axis = find(Axis::longitude)) longitudes = axis->values;
-  if (const Dimension* axis = find(Axis::latitude)) latitudes = axis->values;
+  if (variable.found) read_axes();
+}
+
+void NetcdfGrid::Impl::read_axes() {
+  const Dimension* const x = find(Axis::longitude);
+  const Dimension* const y = find(Axis::latitude);
+  if (x == nullptr || y == nullptr) return;  // both are there: the reader has looked
+  if (x->projected != y->projected)
+    throw InputError({.where = path.string() + ": " + variable.name,
+                      .got = "one axis in degrees and one in a unit of length",
+                      .expected = "both alike"});
+  geographic = !x->projected;
+  eastings = x->values;
+  northings = y->values;
   if (const Dimension* axis = find(Axis::depth)) depths = axis->values;
   depths_reversed = depths.size() > 1 && depths.front() > depths.back();
   if (depths_reversed) std::reverse(depths.begin(), depths.end());
+  const Dimension* const time = find(Axis::time);
+  if (time == nullptr) return;
+  every_year = time->every_year;
+  const auto units = TimeUnits::parse(time->units, time->calendar);
+  if (!units) return;
+  calendar = units->calendar();
+  for (const double t : time->values) moments.push_back(units->at(t));
+  for (const double t : time->spans) spans.push_back(units->at(t));
+}
+
+std::vector<double> NetcdfGrid::Impl::read(const Part& part) const {
+  isolated::Packed question;
+  question.put(part);
+  auto values = isolated::Unpacked(child->ask(question.bytes())).get<std::vector<double>>();
+  for (double& value : values) value = variable.unpacked(value);
+  return values;
 }
 
 double NetcdfGrid::Impl::value(std::size_t i, std::size_t j, std::size_t level,
                                std::size_t time) const {
-  std::vector<std::size_t> index;
+  Part part;
   for (const Dimension& dimension : variable.dimensions) {
     if (!dimension.known)
-      index.push_back(0);
+      part.start.push_back(0);
     else if (dimension.axis == Axis::longitude)
-      index.push_back(i);
+      part.start.push_back(i);
     else if (dimension.axis == Axis::latitude)
-      index.push_back(j);
+      part.start.push_back(j);
     else if (dimension.axis == Axis::depth)
-      index.push_back(depths_reversed ? depths.size() - 1 - level : level);
+      part.start.push_back(depths_reversed ? depths.size() - 1 - level : level);
     else
-      index.push_back(time);
+      part.start.push_back(time);
+    part.count.push_back(1);
   }
-  isolated::Packed question;
-  question.put(index);
-  const auto packed = isolated::Unpacked(child->ask(question.bytes())).get<double>();
-  if (!std::isfinite(packed)) return missing;
-  for (const double flag :
-       variable.missing_values)  // stored as float, the flag may be a double, or round
-    if (std::abs(packed - flag) <= 1e-6 * std::abs(flag)) return missing;
-  const auto& valid = variable.valid;
-  if (valid.size() == 2 && (packed < valid[0] || packed > valid[1])) return missing;
-  return packed * variable.scale + variable.offset;
+  return read(part).front();
 }
 
 NetcdfGrid::NetcdfGrid(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -320,13 +484,169 @@ std::optional<NetcdfGrid> NetcdfGrid::find(const std::filesystem::path& path,
   return NetcdfGrid(std::move(impl));
 }
 
+const std::filesystem::path& NetcdfGrid::path() const noexcept { return impl_->path; }
 const std::string& NetcdfGrid::variable() const noexcept { return impl_->variable.name; }
 const std::string& NetcdfGrid::units() const noexcept { return impl_->variable.units; }
+const std::string& NetcdfGrid::standard_name() const noexcept {
+  return impl_->variable.standard_name;
+}
+const std::string& NetcdfGrid::long_name() const noexcept { return impl_->variable.long_name; }
+bool NetcdfGrid::geographic() const noexcept { return impl_->geographic; }
+const std::vector<double>& NetcdfGrid::eastings() const noexcept { return impl_->eastings; }
+const std::vector<double>& NetcdfGrid::northings() const noexcept { return impl_->northings; }
+const std::vector<Moment>& NetcdfGrid::moments() const noexcept { return impl_->moments; }
+const std::vector<Moment>& NetcdfGrid::spans() const noexcept { return impl_->spans; }
+Calendar NetcdfGrid::calendar() const noexcept { return impl_->calendar; }
+bool NetcdfGrid::every_year() const noexcept { return impl_->every_year; }
 bool NetcdfGrid::has(Axis axis) const noexcept { return impl_->find(axis) != nullptr; }
 const std::vector<double>& NetcdfGrid::depths() const noexcept { return impl_->depths; }
 std::size_t NetcdfGrid::times() const noexcept {
   const Dimension* time = impl_->find(Axis::time);
   return time == nullptr ? 1 : time->values.size();
+}
+
+bool NetcdfGrid::wraps() const noexcept {
+  const auto& axis = impl_->eastings;
+  if (!impl_->geographic || axis.size() < 2) return false;
+  const double length = std::abs(axis.back() - axis.front());
+  return length + 1.5 * length / static_cast<double>(axis.size() - 1) >= 360.0;
+}
+
+namespace {
+
+/// What of a dimension goes into a block, and where.
+struct Along {
+  NetcdfGrid::Indices indices;  // as stored
+  std::size_t stride = 0;       // of the block
+  bool reversed = false;        // stored from the far end
+};
+
+/// Puts a part of a variable into a block, a piece at a time.
+class BlockReader {
+ public:
+  using Read = std::function<std::vector<double>(const Part&)>;
+  BlockReader(std::vector<Along> dimensions, Read read)
+      : dimensions_(std::move(dimensions)), read_(std::move(read)) {}
+
+  void into(std::vector<double>& values, std::size_t offset) {
+    Part part;
+    for (const Along& along : dimensions_) {
+      part.start.push_back(along.indices.first);
+      part.count.push_back(along.indices.last - along.indices.first + 1);
+    }
+    pieces(0, part, values, offset);
+  }
+
+ private:
+  [[nodiscard]] std::size_t place(std::size_t d, std::size_t index) const {
+    const Along& along = dimensions_[d];
+    return along.stride *
+           (along.reversed ? along.indices.last - index : index - along.indices.first);
+  }
+
+  /// Halves the outermost dimension that is longer than one until a piece is small enough.
+  void pieces(std::size_t d, const Part& part, std::vector<double>& values, std::size_t offset) {
+    std::size_t size = 1;
+    for (const std::size_t n : part.count) size *= n;
+    while (d < part.count.size() && part.count[d] == 1) ++d;
+    if (size > largest_piece && d < part.count.size()) {
+      Part half = part;
+      half.count[d] = part.count[d] / 2;
+      pieces(d, half, values, offset);
+      half.start[d] += half.count[d];
+      half.count[d] = part.count[d] - half.count[d];
+      return pieces(d, half, values, offset);
+    }
+    const std::vector<double> read = read_(part);
+    std::size_t next = 0;
+    scatter(0, part, read, next, values, offset);
+  }
+
+  void scatter(std::size_t d, const Part& part, const std::vector<double>& read, std::size_t& next,
+               std::vector<double>& values, std::size_t offset) const {
+    if (d == part.count.size()) {
+      values[offset] = read[next++];
+      return;
+    }
+    for (std::size_t i = 0; i < part.count[d]; ++i)
+      scatter(d + 1, part, read, next, values, offset + place(d, part.start[d] + i));
+  }
+
+  std::vector<Along> dimensions_;
+  Read read_;
+};
+
+/// A part of an axis that rises. \return whether it was turned round
+bool rising(std::vector<double>& axis) {
+  const bool turned = axis.size() > 1 && axis.front() > axis.back();
+  if (turned) std::reverse(axis.begin(), axis.end());
+  return turned;
+}
+
+void check_indices(NetcdfGrid::Indices indices, std::size_t size, const char* what) {
+  if (indices.first > indices.last || indices.last >= std::max<std::size_t>(size, 1))
+    throw std::out_of_range(std::string("NetcdfGrid::block: ") + what);
+}
+
+std::vector<double> part_of(const std::vector<double>& axis, NetcdfGrid::Indices indices) {
+  const auto at = [&](std::size_t i) { return axis.begin() + static_cast<std::ptrdiff_t>(i); };
+  return {at(indices.first), at(indices.last + 1)};
+}
+
+}  // namespace
+
+NetcdfGrid::Block NetcdfGrid::block(Indices east, Indices north, Indices levels,
+                                    std::size_t time) const {
+  const std::size_t n = impl_->eastings.size();
+  if (east.first > east.last && east.first < n && wraps()) {  // two parts, the seam between
+    const Block one = block({east.first, n - 1}, north, levels, time);
+    const Block two = block({0, east.last}, north, levels, time);
+    const bool falls = impl_->eastings.front() > impl_->eastings.back();
+    const Block &west = falls ? two : one, &rest = falls ? one : two;
+    Block both{.eastings = west.eastings, .northings = one.northings, .depths = one.depths};
+    for (double x : rest.eastings) {
+      while (x <= west.eastings.back()) x += 360.0;
+      both.eastings.push_back(x);
+    }
+    const std::size_t rows = one.values.size() / one.eastings.size();
+    for (std::size_t row = 0; row < rows; ++row)
+      for (const Block* part : {&west, &rest}) {
+        const auto begin =
+            part->values.begin() + static_cast<std::ptrdiff_t>(row * part->eastings.size());
+        both.values.insert(both.values.end(), begin,
+                           begin + static_cast<std::ptrdiff_t>(part->eastings.size()));
+      }
+    return both;
+  }
+  check_indices(east, n, "east");
+  check_indices(north, impl_->northings.size(), "north");
+  check_indices(levels, impl_->depths.size(), "levels");
+  if (time >= times()) throw std::out_of_range("NetcdfGrid::block: time");
+  Block block{.eastings = part_of(impl_->eastings, east),
+              .northings = part_of(impl_->northings, north)};
+  if (!impl_->depths.empty()) block.depths = part_of(impl_->depths, levels);
+  const bool x_falls = rising(block.eastings), y_falls = rising(block.northings);
+  const std::size_t row = block.eastings.size(), plane = row * block.northings.size();
+  std::vector<Along> dimensions;
+  for (const Dimension& dimension : impl_->variable.dimensions) {
+    if (!dimension.known)
+      dimensions.push_back({});
+    else if (dimension.axis == Axis::longitude)
+      dimensions.push_back({east, 1, x_falls});
+    else if (dimension.axis == Axis::latitude)
+      dimensions.push_back({north, row, y_falls});
+    else if (dimension.axis == Axis::time)
+      dimensions.push_back({{time, time}, 0, false});
+    else if (const std::size_t last = impl_->depths.size() - 1; impl_->depths_reversed)
+      dimensions.push_back({{last - levels.last, last - levels.first}, plane, true});
+    else
+      dimensions.push_back({levels, plane, false});
+  }
+  block.values.resize(plane * (levels.last - levels.first + 1));
+  BlockReader(std::move(dimensions), [this](const Part& part) {
+    return impl_->read(part);
+  }).into(block.values, 0);
+  return block;
 }
 
 namespace {
@@ -357,8 +677,10 @@ std::optional<Between> locate(const std::vector<double>& axis, double x, double 
     const std::size_t end = (x > most) == rising ? n - 1 : 0;
     return Between{.low = end, .high = end};
   }
-  std::size_t i = 0;
-  while (i + 2 < n && (rising ? axis[i + 1] <= x : axis[i + 1] >= x)) ++i;
+  const auto after = std::partition_point(axis.begin() + 1, axis.end() - 1, [&](double value) {
+    return rising ? value <= x : value >= x;
+  });
+  const auto i = static_cast<std::size_t>(after - axis.begin() - 1);
   return Between{.low = i, .high = i + 1, .share = (x - axis[i]) / (axis[i + 1] - axis[i])};
 }
 
@@ -366,8 +688,8 @@ std::optional<Between> locate(const std::vector<double>& axis, double x, double 
 
 double NetcdfGrid::nearest(double longitude, double latitude, std::size_t level,
                            std::size_t time) const {
-  const auto x = locate(impl_->longitudes, longitude, 360.0);
-  const auto y = locate(impl_->latitudes, latitude, 0.0);
+  const auto x = locate(impl_->eastings, longitude, impl_->period());
+  const auto y = locate(impl_->northings, latitude, 0.0);
   if (!x || !y) return missing;
   return impl_->value(x->share < 0.5 ? x->low : x->high, y->share < 0.5 ? y->low : y->high, level,
                       time);
@@ -375,8 +697,8 @@ double NetcdfGrid::nearest(double longitude, double latitude, std::size_t level,
 
 double NetcdfGrid::bilinear(double longitude, double latitude, std::size_t level,
                             std::size_t time) const {
-  const auto x = locate(impl_->longitudes, longitude, 360.0);
-  const auto y = locate(impl_->latitudes, latitude, 0.0);
+  const auto x = locate(impl_->eastings, longitude, impl_->period());
+  const auto y = locate(impl_->northings, latitude, 0.0);
   if (!x || !y) return missing;
   double sum = 0.0, weights = 0.0;
   for (const bool east : {false, true})

@@ -5,38 +5,90 @@
 #include <string>
 #include <vector>
 
+#include "io/climatology/calendar.h"
+
 namespace asdic::detail {
 
-/// One variable of a gridded netCDF file on longitude × latitude (× depth) (× time), by the COARDS
-/// and CF conventions: axes are known by their units, standard_name, axis or positive attributes.
+/// One variable of a gridded netCDF file on longitude × latitude, or on projected x × y, (× depth)
+/// (× time), by the COARDS and CF conventions: axes are known by their units, standard_name, axis
+/// or positive attributes.
 ///
-/// Values come unpacked (scale_factor, add_offset) and NaN where missing (missing_value,
-/// _FillValue, valid_range). Longitudes may run 0..360, −180..180 or anything else; the grid wraps
-/// when it goes round. The netCDF library is not thread-safe: one thread at a time.
+/// The file is opened, not loaded: its axes are in memory, and of its values what was asked for.
+/// They come unpacked (scale_factor, add_offset) and NaN where missing (missing_value, _FillValue,
+/// netCDF's own fill value, valid_range, valid_min, valid_max). Longitudes may run 0..360,
+/// −180..180 or anything else; the grid wraps when it goes round. The netCDF library is not
+/// thread-safe: one thread at a time.
 class NetcdfGrid {
  public:
+  /// The horizontal ones are x and y [m] where the grid is projected.
   enum class Axis { longitude, latitude, depth, time };
+
+  /// The first and last of some indices along an axis, both included.
+  struct Indices {
+    std::size_t first, last;
+    bool operator==(const Indices&) const = default;
+  };
+
+  /// A part of the grid at one time, on axes that all rise.
+  struct Block {
+    std::vector<double> eastings{}, northings{};  ///< [° east], [° north]; or x, y [m]
+    std::vector<double> depths{};                 ///< [m], positive down; empty without such axis
+    /// [levels × northings × eastings], the last fastest; one level without depths
+    std::vector<double> values{};
+
+    [[nodiscard]] double at(std::size_t i, std::size_t j, std::size_t level = 0) const {
+      return values[(level * northings.size() + j) * eastings.size() + i];
+    }
+  };
 
   /// Opens a variable by standard_name, else by name (letter case does not matter).
   /// \param names  in order of preference   \return nothing if the file has none of them
   /// \throws InputError if the file is not readable netCDF, or the variable has no longitude and
-  /// latitude, or a dimension longer than one that is no known axis
+  /// latitude (or projected x and y), a dimension longer than one that is no known axis, or an axis
+  /// that neither rises nor falls
   [[nodiscard]] static std::optional<NetcdfGrid> find(const std::filesystem::path& path,
                                                       const std::vector<std::string>& names);
   NetcdfGrid(NetcdfGrid&&) noexcept;
   NetcdfGrid& operator=(NetcdfGrid&&) noexcept;
   ~NetcdfGrid();
 
+  [[nodiscard]] const std::filesystem::path& path() const noexcept;
   [[nodiscard]] const std::string& variable() const noexcept;
   [[nodiscard]] const std::string& units() const noexcept;
+  [[nodiscard]] const std::string& standard_name() const noexcept;  ///< "" without one
+  [[nodiscard]] const std::string& long_name() const noexcept;      ///< "" without one
   [[nodiscard]] bool has(Axis axis) const noexcept;
+  /// Whether the horizontal axes are longitude and latitude; else they are x and y.
+  [[nodiscard]] bool geographic() const noexcept;
+  /// The horizontal axes in the order of the file: [° east] without a jump, or x [m]
+  [[nodiscard]] const std::vector<double>& eastings() const noexcept;
+  [[nodiscard]] const std::vector<double>& northings() const noexcept;  ///< [° north], or y [m]
+  /// Whether a geographic grid goes round the globe, to within one and a half of its steps.
+  [[nodiscard]] bool wraps() const noexcept;
   /// [levels] of the depth axis, positive down, in increasing order [m]; empty without one
   [[nodiscard]] const std::vector<double>& depths() const noexcept;
   [[nodiscard]] std::size_t times() const noexcept;  ///< 1 without a time axis
 
+  /// Times by the file's calendar; empty without a time axis, or if its units are not "… since …".
+  [[nodiscard]] const std::vector<Moment>& moments() const noexcept;
+  /// [2·times] begin and end of what each step stands for, if the file has them; else empty.
+  [[nodiscard]] const std::vector<Moment>& spans() const noexcept;
+  [[nodiscard]] Calendar calendar() const noexcept;
+  /// Whether the file says that its times are those of every year (climatology, modulo).
+  [[nodiscard]] bool every_year() const noexcept;
+
+  /// A part of the grid: whatever the order of dimensions in the file and the direction of its axes
+  /// there, axes rise and values are unpacked. Read in pieces, so it may be large.
+  /// \param east, north  indices into eastings() and northings(). A grid that wraps may be read
+  /// across its seam: `east.first` is then the greater, and eastings go on rising past it.
+  /// \param levels  of depths(), which has none: {0, 0}   \param time  below times()
+  /// \throws std::out_of_range
+  [[nodiscard]] Block block(Indices east, Indices north, Indices levels = {},
+                            std::size_t time = 0) const;
+
   /// The value of the nearest grid point (never a mixture of land and sea).
-  /// \param longitude, latitude  [° east], [° north]   \param level  of depths()   \return NaN if
-  /// missing there, or if the grid does not reach there
+  /// \param longitude, latitude  [° east], [° north]; of a projected grid x, y [m]   \param level
+  /// of depths()   \return NaN if missing there, or if the grid does not reach there
   [[nodiscard]] double nearest(double longitude, double latitude, std::size_t level = 0,
                                std::size_t time = 0) const;
   /// Between the four grid points around; missing ones are left out and the weights of the others
