@@ -98,6 +98,17 @@ BoundaryShape::BoundaryShape(std::span<const double> range, std::span<const doub
   find_extremes();
 }
 
+BoundaryShape BoundaryShape::with_slopes(std::span<const double> range,
+                                         std::span<const double> depth,
+                                         std::span<const double> slope,
+                                         std::vector<BoundaryMaterial> material) {
+  BoundaryShape shape(range, depth, ShapeInterpolation::smooth, std::move(material));
+  check_as_many(slope.size(), "slope", range.size(), "ranges");
+  shape.slope_.assign(slope.begin(), slope.end());
+  shape.find_extremes();
+  return shape;
+}
+
 // Curvilinear: a node's tangent is the mean of both facets' unit tangents; the flat parts
 // beyond the ends count.
 void BoundaryShape::bend_facets() {

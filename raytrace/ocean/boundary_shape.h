@@ -41,6 +41,13 @@ class BoundaryShape {
   BoundaryShape(std::span<const double> range, std::span<const double> depth,
                 ShapeInterpolation interpolation, std::vector<BoundaryMaterial> material = {});
 
+  /// A smooth boundary whose slopes at its nodes are known.
+  /// \param slope  [n] d(depth)/d(range)
+  [[nodiscard]] static BoundaryShape with_slopes(std::span<const double> range,
+                                                 std::span<const double> depth,
+                                                 std::span<const double> slope,
+                                                 std::vector<BoundaryMaterial> material = {});
+
   /// The same boundary along a line that leaves the transect at `origin` [m] under an angle of this
   /// cosine: a point at range r of the line lies at origin + r·cosine of the transect. Depths stay,
   /// slopes shrink by the cosine. \param cosine  −1..1, not 0; below 0 the line runs backwards

@@ -1,0 +1,76 @@
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+
+#include "raytrace/area/area_maps.h"
+#include "raytrace/area/area_settings.h"
+#include "raytrace/ocean/environment.h"
+
+namespace asdic::detail {
+
+/// An ocean over a map: depth, water and sea floor by maps of their own, the rest of an Environment
+/// everywhere the same. Immutable but for what it reads as it is asked. Shared by threads.
+/// docs/theory/area.md
+class Area {
+ public:
+  struct Maps {
+    ScalarMap floor;                      ///< depths [m], at most 0 on land
+    std::optional<WaterMap> water = {};   ///< none: Environment::water everywhere
+    std::optional<ClassMap> seabed = {};  ///< none: Environment::bottom's material everywhere
+    std::map<int, BoundaryMaterial> materials = {};  ///< of the seabed's numbers
+    std::optional<ScalarMap> wind = {};              ///< at 10 m [m/s]; none: one everywhere
+  };
+  /// \param everywhere  surface, losses, roughness; flat   \param settings  where it was read
+  Area(Maps maps, Environment everywhere, AreaSettings settings = {});
+
+  [[nodiscard]] const ScalarMap& floor() const noexcept { return maps_.floor; }
+  [[nodiscard]] const std::optional<WaterMap>& water() const noexcept { return maps_.water; }
+  [[nodiscard]] const std::optional<ClassMap>& seabed() const noexcept { return maps_.seabed; }
+  [[nodiscard]] const std::optional<ScalarMap>& wind() const noexcept { return maps_.wind; }
+  [[nodiscard]] const AreaSettings& settings() const noexcept { return settings_; }
+  [[nodiscard]] const Environment& everywhere() const noexcept { return everywhere_; }
+  [[nodiscard]] const MapFrame& frame() const noexcept { return maps_.floor.frame(); }
+
+  /// Depth of the sea floor [m], at most 0 on land.
+  [[nodiscard]] double bottom_depth(double x, double y) const { return maps_.floor.at(x, y).value; }
+  [[nodiscard]] double surface_depth() const noexcept { return everywhere_.surface.depth; }
+  [[nodiscard]] SoundSpeed3D speed_at(double x, double y, double z) const;
+  [[nodiscard]] const BoundaryMaterial& material_at(double x, double y) const;
+
+  /// The vertical plane from a place along a bearing [rad], to `reach` m and a little behind: nodes
+  /// of the floor where the map needs them, as Hermite cubics that leave a bicubic map by a few
+  /// centimetres and a faceted one not at all; profiles at the spacing of the water's grid. Land is
+  /// a film of water of 0.1 m over a floor that reflects nothing, so that sound that runs up a
+  /// coast ends there.
+  [[nodiscard]] Environment section(const Vec2& place, double bearing, double reach) const;
+
+  /// How far the map goes on from a place along a bearing, to `most` m [m].
+  [[nodiscard]] double reach_on_map(const Vec2& place, double bearing, double most) const;
+  /// Of the floor's grid at a place [m].
+  [[nodiscard]] double spacing(const Vec2& place) const noexcept {
+    return maps_.floor.spacing(place.x(), place.y());
+  }
+  /// Shallowest and deepest floor and fastest water within a distance of a place, on the grids'
+  /// own spacing or a coarser one of 200 lines.
+  struct Bounds {
+    double shallowest = 0.0, deepest = 0.0, fastest = 0.0;
+  };
+  /// Least and most wind within a distance of a place [m/s].
+  struct Winds {
+    double least = 0.0, most = 0.0;
+  };
+  [[nodiscard]] Winds winds(const Vec2& place, double distance) const;
+  [[nodiscard]] Bounds bounds(const Vec2& place, double distance) const;
+
+ private:
+  [[nodiscard]] Boundary floor_along(const Vec2& place, double bearing, double reach) const;
+  void put_water(const Vec2& place, double bearing, double reach, Environment& plane) const;
+
+  Maps maps_;
+  AreaSettings settings_;
+  Environment everywhere_;
+  std::vector<double> levels_;  // of sections
+};
+
+}  // namespace asdic::detail
