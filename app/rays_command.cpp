@@ -81,8 +81,7 @@ Environment plane_along(const RaysOptions& options, double bearing) {
                       .expected = "a sonar scenario, whose platform is somewhere on the map"});
   const Scenario scenario = read_scenario(options.scenario.path, options.scenario.overrides);
   const Vec3 platform = scenario.platforms[0].track.at(0.0).position;
-  return slice(scenario.environment, scenario.transect.range_of(platform.x(), platform.y()),
-               std::cos(radians(bearing) - scenario.transect.bearing));
+  return ocean_on_map(scenario).plane(platform.head<2>(), radians(bearing), reach_of_area);
 }
 
 /// The ocean and the source out of a sonar scenario, or one of an ocean and a run.

@@ -39,6 +39,8 @@ std::span<const SettingsSection> settings_sections() {
   static const std::vector<SettingsSection> all{
       {"scenario", std::string(top_level), "the keys before all tables", keys_of_scenario},
       in_scenario("environment", "the water and its boundaries"),
+      in_scenario("environment.area", "an ocean over the map"),
+      in_scenario("environment.area.seabed.class", "[[…]], what numbers of a map stand for"),
       in_scenario("environment.sound_speed", "of the water"),
       in_scenario("environment.bottom", "below the water"),
       in_scenario("environment.bottom.shape.material", "[[…]], behind the bottom from each node"),

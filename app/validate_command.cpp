@@ -9,6 +9,7 @@
 #include "app/console.h"
 #include "app/sonar_text.h"
 #include "core/units.h"
+#include "io/scenario/area.h"
 #include "io/scenario/document.h"
 #include "io/scenario/propagation.h"
 #include "io/scenario/scenario_reader.h"
@@ -40,9 +41,29 @@ std::pair<double, double> speeds(const Environment& ocean) {
   return {low, high};
 }
 
+/// The maps of an area, and the water under the platform.
+std::string area_text(const Scenario& s) {
+  const Area& area = *s.area;
+  const Vec3 place = s.platforms[0].track.at(0.0).position;
+  std::string text =
+      fmt::format("area       {}, {}, {:.3g} m apart; the platform is over {:.0f} m\n",
+                  area.floor().name(), word_of(area.floor().interpolation()),
+                  area.spacing(place.head<2>()), area.bottom_depth(place.x(), place.y()));
+  if (area.water())
+    text += fmt::format("           {}, {}, {:.3g} km apart\n", area.water()->name(),
+                        count_of(area.water()->depths().size(), "level"),
+                        area.water()->spacing(place.x(), place.y()) / 1000.0);
+  if (area.seabed())
+    text += fmt::format("           {}, {}\n", area.seabed()->name(),
+                        count_of(area.settings().classes.size(), "kind"));
+  if (area.wind()) text += fmt::format("           {}\n", area.wind()->name());
+  return text;
+}
+
 /// Where the transect lies along which the ocean varies.
 std::string transect_text(const PingSimulator& simulator) {
   const Scenario& s = simulator.scenario();
+  if (s.area) return area_text(s);
   if (!varies_with_range(s.environment)) return "";
   return fmt::format(
       "transect   from {:g} m east, {:g} m north along {:g} deg true; the platform is at {:.3f} km "

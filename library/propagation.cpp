@@ -67,9 +67,9 @@ Plane plane_of(const Scenario& scenario) {
   }
   const detail::Scenario sonar = detail::scenario_of(data.document, data.path);
   const detail::Vec3 platform = sonar.platforms[0].track.at(0.0).position;
-  return {
-      detail::slice(sonar.environment, sonar.transect.range_of(platform.x(), platform.y()), 1.0),
-      platform.z()};
+  return {detail::ocean_on_map(sonar).plane(platform.head<2>(), sonar.transect.bearing,
+                                            detail::reach_of_area),
+          platform.z()};
 }
 
 }  // namespace

@@ -48,11 +48,16 @@ DelayTable DelayTables::made(const Plane& plane, double platform_depth, double d
 
 std::shared_ptr<const DelayTable> DelayTables::from(const Vec3& platform, double bearing,
                                                     double depth, double longest) {
-  const Plane plane = paths_.plane(platform, bearing);
+  const Plane plane = paths_.plane(platform, bearing, longest);
   // In a layered ocean all planes are one. Places that move by less than a metre share a table.
   const bool layered = paths_.layered();
-  const Key key(layered ? 0.0 : std::round(plane.origin), layered ? 1.0 : plane.cos_beta,
-                platform.z(), depth, longest);
+  Key key(0.0, 1.0, 0.0, platform.z(), depth, longest);
+  auto& [first, second, third, own_depth, target_depth, furthest] = key;
+  if (paths_.area())
+    first = std::round(plane.place.x()), second = plane.bearing,
+    third = std::round(plane.place.y());
+  else if (!layered)
+    first = std::round(plane.origin), second = plane.cos_beta;
   {
     const std::scoped_lock lock(lock_);
     if (const auto known = made_.find(key); known != made_.end()) return known->second;

@@ -37,7 +37,7 @@ class DelayTables {
  private:
   [[nodiscard]] DelayTable made(const Plane& plane, double platform_depth, double depth,
                                 double longest);
-  using Key = std::tuple<double, double, double, double, double>;  // plane, depths, longest
+  using Key = std::tuple<double, double, double, double, double, double>;  // plane, depths, longest
 
   const PropagationPaths& paths_;
   double frequency_;

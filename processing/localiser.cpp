@@ -216,8 +216,8 @@ std::optional<Location> Localiser::along_ray(const Query& query) const {
     depth = query.received_at.z() -
             0.5 * *settings_.speed * query.detection.time * std::sin(*query.elevation);
   } else {
-    const Plane plane = paths_.plane(query.received_at, query.bearing);
     const double reach = 800.0 * query.detection.time + 1.0;
+    const Plane plane = paths_.plane(query.received_at, query.bearing, reach);
     const RayPath ray = paths_.layered()
                             ? trace_ray(ocean, query.received_at.z(), *query.elevation, reach, 5.0)
                             : trace_ray(paths_.solver(plane)->environment(), query.received_at.z(),

@@ -68,7 +68,7 @@ PingProcessor::PingProcessor(Scenario scenario, std::vector<Replica> replicas,
     : scenario_(std::move(scenario)),
       replicas_(std::move(replicas)),
       settings_(settings),
-      paths_(scenario_.environment, scenario_.transect) {
+      paths_(scenario_.environment, scenario_.transect, scenario_.area) {
   if (replicas_.empty())
     throw InputError({.where = "replica", .got = "none", .expected = "at least one"});
   const auto require = [](bool good, const char* where, double got, const char* expected) {

@@ -18,7 +18,8 @@ std::vector<double> moments(const Scenario& scenario, const Track& track, double
   std::vector<double> times{from, to};
   for (const Waypoint& point : track.waypoints)
     if (point.time > from && point.time < to) times.push_back(point.time);
-  const bool shaped = scenario.environment.surface.shape || scenario.environment.bottom.shape;
+  const bool shaped =
+      scenario.area || scenario.environment.surface.shape || scenario.environment.bottom.shape;
   constexpr int parts = 32;
   if (shaped && track.course_at(from))
     for (int i = 1; i < parts; ++i) times.push_back(std::lerp(from, to, double(i) / parts));
@@ -34,9 +35,8 @@ void check_depth(const Scenario& scenario, const Vec3& place, double time,
                                "a place " + to_text(std::round(place.head<2>().norm())) +
                                    " m away at " + to_text(time) + " s",
                                "coordinates below " + to_text(farthest) + " m"));
-  const double x = scenario.transect.range_of(place.x(), place.y());
-  const double top = scenario.environment.surface.depth_at(x),
-               bottom = scenario.environment.bottom.depth_at(x);
+  const OceanOnMap ocean = ocean_on_map(scenario);
+  const double top = ocean.surface_depth(place), bottom = ocean.bottom_depth(place);
   if (place.z() > top && place.z() < bottom) return;
   throw Refusal("scenario",
                 refusal_text(what, "depth " + to_text(place.z()) + " m at " + to_text(time) + " s",

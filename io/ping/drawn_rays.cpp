@@ -75,7 +75,7 @@ RayPaths drawn_rays(const PingSimulator& simulator) {
   const double c = paths.speed_at(source);
   const std::vector<double> elevations = fan(simulator.transmitter(1));
   const double bearing = bearing_of_fan(scenario, source);
-  const auto along_fan = paths.solver(paths.plane(source, bearing));
+  const auto along_fan = paths.solver(paths.plane(source, bearing, c * one_way));
   const Environment& ocean = along_fan->environment();
 
   double extent = 0.0;
@@ -104,7 +104,7 @@ RayPaths drawn_rays(const PingSimulator& simulator) {
     if (target.first_ping > 1 || target.last_ping < 1) continue;
     const Vec3 position = target.track.at(0.0).position;
     const Separation way = separation(source, position);
-    const auto plane = paths.solver(paths.plane(source, way.bearing));
+    const auto plane = paths.solver(paths.plane(source, way.bearing, way.range));
     const Arrivals arrivals = plane->find(source.z(), position.z(), way.range,
                                           simulator.pulse().centre_frequency(), limits_of(limits));
     for (std::size_t i = 0; i < std::min(arrivals.size(), most_eigenrays); ++i)

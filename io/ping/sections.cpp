@@ -268,6 +268,31 @@ void write_section(Hdf5File& file, const SoundSpeedSection& section) {
                      {"environment/section_range", "environment/section_depth"});
 }
 
+/// Depths of an area on a grid of its own, over all that is heard.
+void write_area(Hdf5File& file, const Scenario& scenario) {
+  const Area& area = *scenario.area;
+  const Vec2 middle = scenario.platforms[0].track.at(0.0).position.head<2>();
+  const double heard =
+      0.5 * 1500.0 * (scenario.pings.recording_start + scenario.pings.recording_duration);
+  const double step = std::max(area.spacing(middle), heard / 100.0);
+  const auto lines = static_cast<int>(std::ceil(heard / step));
+  std::vector<double> east, north, depth;
+  for (int i = -lines; i <= lines; ++i) {
+    east.push_back(middle.x() + i * step);
+    north.push_back(middle.y() + i * step);
+  }
+  for (const double y : north)
+    for (const double x : east)
+      depth.push_back(area.floor().covers(x, y) ? area.bottom_depth(x, y) : std::nan(""));
+  write_scale(file, "environment/area_east", "area_east", east, "east on the map", "m");
+  write_scale(file, "environment/area_north", "area_north", north, "north on the map", "m");
+  file.write<double>("environment/area_depth", depth, {north.size(), east.size()});
+  describe(file, "environment/area_depth",
+           "depth of the sea floor, below 0 on land, NaN beyond the map", "m");
+  file.attach_scales("environment/area_depth", {"environment/area_north", "environment/area_east"});
+  file.set_attribute("environment", "area_bathymetry", area.floor().name());
+}
+
 /// All that varies along the transect, and where that lies.
 void write_transect(Hdf5File& file, const Scenario& scenario) {
   const Environment& ocean = scenario.environment;
@@ -285,7 +310,7 @@ void write_transect(Hdf5File& file, const Scenario& scenario) {
 
 void write_environment(Hdf5File& file, const Scenario& scenario) {
   const Environment& ocean = scenario.environment;
-  const PropagationPaths paths(ocean, scenario.transect);
+  const OceanOnMap paths = ocean_on_map(scenario);
   Vec3 place = scenario.platforms[0].track.at(0.0).position;
   const double surface = paths.surface_depth(place), bottom = paths.bottom_depth(place);
   constexpr std::size_t points = 501;
@@ -309,6 +334,7 @@ void write_environment(Hdf5File& file, const Scenario& scenario) {
   file.set_attribute(group, "absorption", absorption_of(ocean));
   file.set_attribute(group, "interpolation", interpolation_of(ocean));
   write_transect(file, scenario);
+  if (scenario.area) write_area(file, scenario);
   const auto write_law = [&](const auto& law, const std::string& prefix) {
     file.set_attribute(group, prefix + "_model", std::string(name_of(law)));
     NumberAttributes attributes(file, group, prefix + "_");

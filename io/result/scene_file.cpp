@@ -125,8 +125,7 @@ void write_scene(const std::filesystem::path& path, const Scenario& scenario) {
   if (extent < 100.0) extent = 0.5 * 1500.0 * scenario.pings.recording_duration;
   file.set_attribute("", "bearing_deg", compass_degrees(bearing));
   const Environment plane =
-      slice(scenario.environment, scenario.transect.range_of(source.x(), source.y()),
-            std::cos(bearing - scenario.transect.bearing));
+      ocean_on_map(scenario).plane(source.head<2>(), bearing, margin * extent);
   write_environment_group(file, plane, 0.0, margin * extent);
   file.close();
 }

@@ -1,6 +1,7 @@
 // Part of ocean.h: [environment.surface] and [environment.bottom].
 #include "core/quantities.h"
 #include "core/text.h"
+#include "io/scenario/area.h"
 #include "io/scenario/ocean.h"
 #include "io/settings/columns.h"
 #include "io/settings/reader.h"
@@ -104,6 +105,13 @@ std::vector<BoundaryMaterial> read_materials(TomlTable& table, const OceanReadin
 
 Boundary read_boundary_place(TomlTable& table, const OceanReading& reading, bool surface) {
   const std::string key = shape_key(table);
+  if (reading.area != nullptr && (table.has(key) || (!surface && table.has("depth"))))
+    throw table.fault(table.has(key) ? key : "depth",
+                      surface ? "a flat surface over [environment.area]"
+                              : "no " + in_quotes(table.has(key) ? key : "depth") +
+                                    " beside [environment.area.bathymetry], which says it");
+  if (reading.area != nullptr && !surface)
+    return {.depth = std::max(1.0, reading.area->floor().at(0.0, 0.0).value)};
   if (!table.has(key)) {
     KnownSettings known;
     TomlReader reader(table, known);
@@ -187,21 +195,26 @@ struct RoughnessTable {
 struct BoundaryTable {
   const Boundary& boundary;
   bool surface;
+  bool by_map;
 
   void describe(Fields& field) const {
-    Fields::Ways ways;
-    static_cast<void>(field.way(ways, {"shape"}, boundary.shape.has_value()));  // it comes last
-    double depth = boundary.depth;
-    if (const auto way = field.otherwise(ways, {"depth"})) describe_depth(field, surface, depth);
+    if (!by_map) describe_place(field);
     const SettingKey kind = required(by_default("kind", "required but with a material each node"));
     describe_material(field, boundary.material, surface ? "kind" : kind);
     RoughnessTable{boundary.roughness, surface}.describe(field);
+    if (by_map) return;
     std::optional<ShownShape> shape;
     if (boundary.shape) shape = shown(*boundary.shape);
     field("shape", shape, "where it is not flat");
   }
 
  private:
+  void describe_place(Fields& field) const {
+    Fields::Ways ways;
+    static_cast<void>(field.way(ways, {"shape"}, boundary.shape.has_value()));  // it comes last
+    double depth = boundary.depth;
+    if (const auto way = field.otherwise(ways, {"depth"})) describe_depth(field, surface, depth);
+  }
   struct ShownMaterial {
     BoundaryMaterial material = FluidHalfSpace{};
     void describe(Fields& field) const { describe_material(field, material, required("kind")); }
@@ -234,8 +247,8 @@ void read_roughness(TomlTable& table, double wind_speed, bool surface, Roughness
   roughness = settings.rough;
 }
 
-void describe_boundary(Fields& field, bool surface, const Boundary& boundary) {
-  BoundaryTable settings{boundary, surface};
+void describe_boundary(Fields& field, bool surface, const Boundary& boundary, bool by_map) {
+  BoundaryTable settings{boundary, surface, by_map};
   field(surface ? "surface" : "bottom", settings, surface ? "above the water" : "below the water");
 }
 

@@ -78,23 +78,35 @@ class WaterColumn {
  public:
   WaterColumn(const Scenario& scenario, const Vec3& place)
       : varies_(scenario.environment.surface.shape || scenario.environment.bottom.shape),
+        area_(scenario.area != nullptr),
+        on_map_(!area_ || scenario.area->floor().covers(place.x(), place.y())),
+        place_(place),
         x_(scenario.transect.range_of(place.x(), place.y())),
-        top_(scenario.environment.surface.depth_at(x_)),
-        bottom_(scenario.environment.bottom.depth_at(x_)) {}
+        top_(ocean_on_map(scenario).surface_depth(place)),
+        bottom_(ocean_on_map(scenario).bottom_depth(place)) {}
 
-  [[nodiscard]] bool holds(double depth) const { return depth > top_ && depth < bottom_; }
+  [[nodiscard]] bool holds(double depth) const {
+    return on_map_ && depth > top_ && depth < bottom_;
+  }
   [[nodiscard]] std::string expected() const {
-    return "a depth between the surface (" + rounded(top_) + " m) and the bottom (" +
-           rounded(bottom_) + " m)" +
+    const std::string where = to_text(std::round(place_.x())) + " m east, " +
+                              to_text(std::round(place_.y())) + " m north";
+    if (!on_map_) return "a place on the map of environment.area.bathymetry, not " + where;
+    if (area_ && bottom_ <= top_) return "a place at sea: " + where + " is land";
+    const std::string between = "a depth between the surface (" + rounded(top_) +
+                                " m) and the bottom (" + rounded(bottom_) + " m)";
+    if (area_) return between + " there, " + where;
+    return between +
            (varies_ ? " there, " + to_text(std::round(x_)) + " m along the transect" : "");
   }
 
  private:
   [[nodiscard]] std::string rounded(double depth) const {
-    return to_text(varies_ ? std::round(10.0 * depth) / 10.0 : depth);
+    return to_text(varies_ || area_ ? std::round(10.0 * depth) / 10.0 : depth);
   }
 
-  bool varies_;
+  bool varies_, area_, on_map_;
+  Vec3 place_;
   double x_, top_, bottom_;
 };
 
@@ -281,7 +293,7 @@ void check_size(TomlTable& root, const Scenario& scenario) {
 }
 
 void check_fathometer(TomlTable& root, const Scenario& scenario) {
-  if (scenario.propagation.fathometer && varies_with_range(scenario.environment))
+  if (scenario.propagation.fathometer && ocean_on_map(scenario).varies())
     throw root.table("propagation")
         .fault("fathometer",
                "false where the ocean varies along a transect: a mirror that slopes is not in the "

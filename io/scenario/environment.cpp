@@ -5,6 +5,7 @@
 
 #include "core/quantities.h"
 #include "core/text.h"
+#include "io/scenario/area.h"
 #include "io/scenario/ocean.h"
 #include "io/scenario/sections.h"
 #include "io/settings/reader.h"
@@ -72,7 +73,55 @@ void describe_spreading(Fields& field, Spreading& spreading) {
   field("spreading", spreading, "what the sea is beside the plane");
 }
 
+/// At the map's [0, 0].
+SoundSpeedProfile water_at_origin(const WaterMap& water) {
+  const auto depths = water.depths().places();
+  return SoundSpeedProfile::table(depths, water.column(0.0, 0.0, depths), Interpolation::c_linear);
+}
+
+/// [environment.origin]
+struct OriginTable {
+  double latitude = 0.0, longitude = 0.0;  // [rad]
+
+  void describe(Fields& field) {
+    constexpr AngleQuantity north{.noun = "latitude", .low_deg = -90.0, .high_deg = 90.0};
+    constexpr AngleQuantity east{.noun = "longitude", .low_deg = -360.0, .high_deg = 360.0};
+    field(required("latitude"), latitude, north, "of the map's [0, 0], north");
+    field(required("longitude"), longitude, east, "of the map's [0, 0], east");
+  }
+};
+
+std::optional<OriginTable> table_of(const std::optional<GeographicPlace>& origin) {
+  if (!origin) return std::nullopt;
+  return OriginTable{radians(origin->latitude), radians(origin->longitude)};
+}
+
+constexpr std::string_view what_origin = "where on the Earth the map's [0, 0] is";
+
 }  // namespace
+
+Transect read_transect(TomlTable& table) {
+  KnownSettings known;
+  TomlReader reader(table, known);
+  TransectTable transect;
+  reader("transect", transect, "where the ocean's range axis lies on the map");
+  return transect.transect;
+}
+
+std::optional<GeographicPlace> read_origin(TomlTable& table) {
+  KnownSettings known;
+  TomlReader reader(table, known);
+  std::optional<OriginTable> origin;
+  reader("origin", origin, what_origin);
+  if (!origin) return std::nullopt;
+  return GeographicPlace{degrees(origin->latitude), degrees(origin->longitude)};
+}
+
+std::optional<AreaReading> read_area(TomlTable& table, const OceanReading& reading,
+                                     const std::optional<GeographicPlace>& origin) {
+  if (!table.has("area")) return std::nullopt;
+  return AreaReading(table.table("area"), reading, origin);
+}
 
 Environment read_ocean(TomlTable& table, const OceanReading& reading) {
   Environment ocean;
@@ -84,7 +133,14 @@ Environment read_ocean(TomlTable& table, const OceanReading& reading) {
   TomlReader reader(table, known);
   describe_density(reader, ocean);
   describe_losses(reader, ocean);
-  read_sound_speed(table.table("sound_speed"), reading, ocean);
+  if (reading.area != nullptr && reading.area->water()) {
+    if (table.has("sound_speed"))
+      throw table.fault("sound_speed", "none beside [environment.area.sound_speed], which says it",
+                        "[environment.sound_speed]");
+    ocean.water = water_at_origin(*reading.area->water());
+  } else {
+    read_sound_speed(table.table("sound_speed"), reading, ocean);
+  }
   read_boundary_materials(bottom, reading, ocean, false, ocean.bottom);
   double wind = default_wind_speed();
   describe_wind(reader, wind);
@@ -101,10 +157,10 @@ void OceanTable::describe(Fields& field) const {
   Environment shown = ocean;
   if (varies_with_range(ocean) || field.exhaustive()) describe_spreading(field, shown.spreading);
   describe_density(field, shown);
-  describe_sound_speed(field, ocean);
+  if (!water_by_map) describe_sound_speed(field, ocean);
   describe_losses(field, shown);
   describe_boundary(field, true, ocean.surface);
-  describe_boundary(field, false, ocean.bottom);
+  describe_boundary(field, false, ocean.bottom, depth_by_map);
 }
 
 namespace {
@@ -116,9 +172,16 @@ struct SonarOcean {
   void describe(Fields& field) const {
     double wind_speed = scenario.wind_speed;
     describe_wind(field, wind_speed);
+    std::optional<OriginTable> origin = table_of(scenario.origin);
+    field("origin", origin, what_origin);
     TransectTable transect{scenario.transect};
     field("transect", transect, "where the ocean's range axis lies on the map");
-    OceanTable{scenario.environment}.describe(field);
+    const Area* const area = scenario.area.get();
+    describe_area(field, area != nullptr ? &area->settings() : nullptr);
+    if (area != nullptr)
+      OceanTable{area->everywhere(), true, area->water().has_value()}.describe(field);
+    else
+      OceanTable{scenario.environment}.describe(field);
   }
 };
 
@@ -134,11 +197,23 @@ void read_environment(TomlTable table, const std::filesystem::path& folder, doub
   KnownSettings known;
   TomlReader reader(table, known);
   describe_wind(reader, scenario.wind_speed);
-  TransectTable transect;
-  reader("transect", transect, "where the ocean's range axis lies on the map");
-  scenario.transect = transect.transect;
-  scenario.environment =
-      read_ocean(table, {.folder = folder, .frequency = frequency, .notes = scenario.notes});
+  scenario.transect = read_transect(table);
+  scenario.origin = read_origin(table);
+  OceanReading reading{.folder = folder, .frequency = frequency, .notes = scenario.notes};
+  std::optional<AreaReading> area = read_area(table, reading, scenario.origin);
+  if (area) {
+    reading.area = &*area;
+    if (const auto wind = area->wind_speed(0.0, 0.0)) {
+      if (table.has("wind_speed"))
+        throw table.fault("wind_speed", "none beside [environment.area.wind], which says it");
+      scenario.wind_speed = *wind;
+    }
+  }
+  scenario.environment = read_ocean(table, reading);
+  if (area) {
+    scenario.area = area->build(scenario.environment);
+    scenario.environment = along_transect(*scenario.area, scenario.transect);
+  }
   table.finish();
 }
 

@@ -7,7 +7,7 @@
 
 #include "core/fields.h"
 #include "io/text/toml_table.h"
-#include "raytrace/ocean/environment.h"
+#include "raytrace/area/ocean_on_map.h"
 
 namespace asdic::detail {
 
@@ -20,11 +20,14 @@ constexpr std::span<const std::string_view> words(Spreading) { return spreading_
 /// The parts of [environment] (docs/formats/scenario.md), one function per table.
 namespace scenario {
 
+class AreaReading;
+
 /// What the reading of an ocean needs to know besides its tables.
 struct OceanReading {
-  std::filesystem::path folder;     ///< that file names are relative to
-  double frequency = 0.0;           ///< for attenuations per metre [Hz]
-  std::vector<std::string>& notes;  ///< grows by what the user should know
+  std::filesystem::path folder;       ///< that file names are relative to
+  double frequency = 0.0;             ///< for attenuations per metre [Hz]
+  std::vector<std::string>& notes;    ///< grows by what the user should know
+  const AreaReading* area = nullptr;  ///< none: depth and water are those of the tables
 };
 
 // The settings of each table are described once, in the .cpp of its reader: read_…() reads them
@@ -47,7 +50,8 @@ void read_boundary_materials(TomlTable& table, const OceanReading& reading,
                              const Environment& ocean, bool surface, Boundary& boundary);
 /// How rough it is. \param wind_speed  of the sea that "wind" asks for [m/s]
 void read_roughness(TomlTable& table, double wind_speed, bool surface, Roughness& roughness);
-void describe_boundary(Fields& field, bool surface, const Boundary& boundary);
+/// \param by_map  where it is, an area says
+void describe_boundary(Fields& field, bool surface, const Boundary& boundary, bool by_map = false);
 
 /// `kind` and its keys: a profile, or a section. The boundaries are in their places already.
 void read_sound_speed(TomlTable table, const OceanReading& reading, Environment& ocean);
@@ -64,11 +68,20 @@ void describe_absorption(Fields& field, const Environment& ocean);
 /// [environment] for a walker that does not read, without what only a sonar needs.
 struct OceanTable {
   const Environment& ocean;
+  bool depth_by_map = false, water_by_map = false;  ///< which an area says
   void describe(Fields& field) const;
 };
 
-/// All of [environment] but what only a sonar needs (wind_speed, transect): the caller asks for
-/// those keys, and finishes the table.
+/// [environment.transect]
+[[nodiscard]] Transect read_transect(TomlTable& table);
+/// [environment.origin]; none: it is not said.
+[[nodiscard]] std::optional<GeographicPlace> read_origin(TomlTable& table);
+/// [environment.area], its files opened; none: there is none.
+[[nodiscard]] std::optional<AreaReading> read_area(TomlTable& table, const OceanReading& reading,
+                                                   const std::optional<GeographicPlace>& origin);
+
+/// All of [environment] but what only a sonar needs (wind_speed, transect), origin and area: the
+/// caller asks for those keys, and finishes the table.
 [[nodiscard]] Environment read_ocean(TomlTable& table, const OceanReading& reading);
 
 }  // namespace scenario

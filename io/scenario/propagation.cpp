@@ -1,5 +1,6 @@
 #include "io/scenario/propagation.h"
 
+#include "io/scenario/area.h"
 #include "io/scenario/document.h"
 #include "io/scenario/ocean.h"
 #include "io/scenario/scenario_reader.h"
@@ -34,8 +35,14 @@ PropagationCase of_ocean_and_run(const TomlValue& document, const std::filesyste
   TomlTable environment = root.table("environment");
   for (const char* of_a_sonar : {"wind_speed", "transect"})
     static_cast<void>(environment.has(of_a_sonar));
-  run.environment = scenario::read_ocean(
-      environment, {.folder = folder, .frequency = run.frequency, .notes = notes});
+  scenario::OceanReading reading{.folder = folder, .frequency = run.frequency, .notes = notes};
+  std::optional<scenario::AreaReading> area =
+      scenario::read_area(environment, reading, scenario::read_origin(environment));
+  if (area) reading.area = &*area;
+  run.environment = scenario::read_ocean(environment, reading);
+  if (area)
+    run.environment =
+        along_transect(*area->build(run.environment), scenario::read_transect(environment));
   environment.finish();
   scenario::read_run(std::move(table), run);
   root.finish();
@@ -51,7 +58,7 @@ PropagationCase of_sonar(const TomlValue& document, const Scenario& scenario,
   PropagationCase run;
   run.title = scenario.title;
   run.environment =
-      slice(scenario.environment, scenario.transect.range_of(platform.x(), platform.y()), 1.0);
+      ocean_on_map(scenario).plane(platform.head<2>(), scenario.transect.bearing, reach_of_area);
   run.frequency = Pulse(scenario.pulse).centre_frequency();
   run.source_depths = {platform.z()};
   TomlTable root(document);

@@ -253,16 +253,15 @@ std::vector<CellPath> march_fan(const EigenraySolver& solver, double source_dept
                                 const GroundLevel& level, const GroundGrid& grid, double max_range,
                                 double frequency, const PathLimits& limits, const StopPoint& stop) {
   stop();
-  const double spacing = grid.spacing();
   const FanLimits fan{.lowest = -limits.max_launch_angle,
                       .highest = limits.max_launch_angle,
                       .max_surface_bounces = limits.max_surface_bounces,
                       .max_bottom_bounces = limits.max_bottom_bounces,
                       .faintest = limits.faintest};
   std::vector<CellPath> found;
-  for (const CellHit& hit : hits_on_cells(*solver.tracer(frequency), source_depth, level, spacing,
+  for (const CellHit& hit : hits_on_cells(*solver.tracer(frequency), source_depth, level, grid,
                                           max_range, frequency, fan)) {
-    const double range = (hit.cell + 0.5) * spacing;
+    const double range = grid.range(hit.cell);
     if (hit.delay + limits.home_slowness * range > limits.max_delay) continue;
     found.push_back({hit.cell,
                      {.delay = hit.delay,
@@ -315,7 +314,7 @@ int followed_cycles(int most) noexcept {
 BoundaryPaths boundary_paths(const EigenraySolver& solver, double source_depth,
                              const GroundLevel& level, const GroundGrid& grid, double max_range,
                              double frequency, const PathLimits& limits, const StopPoint& stop) {
-  const GroundGrid own = solver.layered() ? grid : GroundGrid(grid.spacing());
+  const GroundGrid own = solver.layered() ? grid : grid.without_fine();
   const std::vector<CellPath> found = (solver.layered() ? follow_branches : march_fan)(
       solver, source_depth, level, own, max_range, frequency, limits, stop);
   check_finite(found, source_depth);

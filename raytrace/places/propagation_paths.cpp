@@ -42,6 +42,13 @@ std::size_t bytes_of_slice(const Environment& slice) {
   return samples * doubles_a_sample * sizeof(double);
 }
 
+/// Somewhat beyond where sound is followed to, for what a slope beyond sends back; in steps of
+/// 19 %, so that ends that move find the plane that is kept.
+double reach_in_steps(double range) {
+  constexpr double least = 2000.0, more = 1.05;
+  return std::exp2(std::ceil(4.0 * std::log2(more * range + least)) / 4.0);
+}
+
 void sort_by_delay(Arrivals& arrivals) {
   std::stable_sort(arrivals.begin(), arrivals.end(),
                    [](const Arrival& a, const Arrival& b) { return a.delay < b.delay; });
@@ -98,45 +105,61 @@ void add_to(ExactKey& key, const PathLimits& limits) {
               home_slowness);
 }
 
+void add_to(ExactKey& key, const Plane& plane, bool area) {
+  if (area)
+    key.add_all(plane.place, plane.bearing, plane.reach);
+  else
+    key.add_all(plane.origin, plane.cos_beta);
+}
+
 PropagationPaths::PropagationPaths(const Environment& ocean, const Transect& transect,
+                                   std::shared_ptr<const Area> area,
                                    std::shared_ptr<PropagationMemory> memory)
     : along_(ocean),
       transect_(transect),
-      layered_(is_layered(ocean)),
+      area_(std::move(area)),
+      layered_(is_layered(ocean) && !area_),
       identity_(next_identity()),
       memory_(memory ? std::move(memory)
                      : std::make_shared<PropagationMemory>(own_bytes, own_pings)) {}
 
-Plane PropagationPaths::plane(const Vec3& from, double bearing) const noexcept {
-  return {.origin = along(from), .cos_beta = std::cos(bearing - transect_.bearing)};
+Plane PropagationPaths::plane(const Vec3& from, double bearing, double reach) const noexcept {
+  return {.origin = along(from),
+          .cos_beta = std::cos(bearing - transect_.bearing),
+          .place = from.head<2>(),
+          .bearing = bearing,
+          .reach = reach_in_steps(reach)};
 }
 
 Plane PropagationPaths::plane(const Vec3& from, const Vec3& to) const noexcept {
-  return plane(from, separation(from, to).bearing);
+  const Separation way = separation(from, to);
+  return plane(from, way.bearing, way.range);
 }
 
-double PropagationPaths::surface_depth(const Vec3& place) const noexcept {
-  return along_.environment().surface.depth_at(along(place));
+Environment PropagationPaths::environment_of(const Plane& plane) const {
+  if (area_) return area_->section(plane.place, plane.bearing, plane.reach);
+  return slice(along_.environment(), plane.origin, plane.cos_beta);
 }
 
-double PropagationPaths::bottom_depth(const Vec3& place) const noexcept {
-  return along_.environment().bottom.depth_at(along(place));
+double PropagationPaths::surface_depth(const Vec3& place) const {
+  return on_map().surface_depth(place);
 }
 
-double PropagationPaths::speed_at(const Vec3& place) const noexcept {
-  const Environment& ocean = along_.environment();
-  if (layered_) return ocean.water.at(place.z()).c;
-  return sound_speed(ocean, along(place), place.z()).c;
+double PropagationPaths::bottom_depth(const Vec3& place) const {
+  return on_map().bottom_depth(place);
+}
+
+double PropagationPaths::speed_at(const Vec3& place) const {
+  if (layered_) return along_.environment().water.at(place.z()).c;
+  return on_map().speed_at(place);
 }
 
 std::shared_ptr<const EigenraySolver> PropagationPaths::solver(const Plane& plane) const {
   if (layered_) return {std::shared_ptr<void>(), &along_};  // not owned
+  ExactKey own = key(Kept::slice);
+  add_to(own, plane, area_ != nullptr);
   return memory_->remember(
-      key(Kept::slice, plane.origin, plane.cos_beta),
-      [&] {
-        return std::make_shared<EigenraySolver>(
-            slice(along_.environment(), plane.origin, plane.cos_beta));
-      },
+      own, [&] { return std::make_shared<EigenraySolver>(environment_of(plane)); },
       [](const EigenraySolver& made) { return bytes_of_slice(made.environment()); });
 }
 
@@ -144,9 +167,8 @@ std::shared_ptr<const EigenraySolver> PropagationPaths::solver(const Plane& plan
 ExactKey PropagationPaths::leg_key(Kept kind, const Vec3& from, const Vec3& to, double frequency,
                                    const PathLimits& limits) const {
   ExactKey leg = key(kind, from.z(), to.z(), separation(from, to).range, frequency, limits);
-  if (layered_) return leg;
-  const Plane line = plane(from, to);
-  return leg.add_all(line.origin, line.cos_beta);
+  if (!layered_) add_to(leg, plane(from, to), area_ != nullptr);
+  return leg;
 }
 
 Arrivals PropagationPaths::search(const Vec3& from, const Vec3& to, double frequency,
@@ -203,10 +225,7 @@ Arrivals PropagationPaths::followed(std::span<const Arrival> known, const Vec3& 
                                     const PathLimits& limits) const {
   const double range = separation(from, to).range;
   std::optional<RayTracer> tracer;
-  if (!layered_) {
-    const Plane line = plane(from, to);
-    tracer.emplace(slice(along_.environment(), line.origin, line.cos_beta), frequency);
-  }
+  if (!layered_) tracer.emplace(environment_of(plane(from, to)), frequency);
   Arrivals found;
   for (const Arrival& path : known) {
     std::optional<Arrival> same;

@@ -4,29 +4,35 @@
 #include <span>
 
 #include "core/propagation_memory.h"
-#include "raytrace/ocean/transect.h"
+#include "raytrace/area/ocean_on_map.h"
 #include "raytrace/paths/eigenrays.h"
 #include "raytrace/places/reuse.h"
 
 namespace asdic::detail {
 
-/// A vertical plane through the ocean: from a place on the map in one direction.
+/// A vertical plane through the ocean: from a place on the map in one direction. Over a transect
+/// the first two say all, over an area the others.
 struct Plane {
-  double origin = 0.0;    ///< of the place along the transect [m]
-  double cos_beta = 1.0;  ///< of the angle between the direction and the transect
+  double origin = 0.0;        ///< of the place along the transect [m]
+  double cos_beta = 1.0;      ///< of the angle between the direction and the transect
+  Vec2 place = Vec2::Zero();  ///< [m]
+  double bearing = 0.0;       ///< clockwise from north [rad]
+  double reach = 0.0;         ///< at least, of the section that is taken out of the area [m]
 };
 
 /// The sound paths between any two places of a scenario's map.
 ///
-/// In a layered ocean one solver serves all places. Where the ocean varies along a transect, sound
-/// travels in the vertical plane through both places (N × 2D), and each plane is a slice of the
-/// ocean with a solver of its own. The slices and eigenrays that were used last are kept. Shared by
-/// threads; what comes out does not depend on what is kept. docs/theory/transect.md
+/// In a layered ocean one solver serves all places. Where the ocean varies along a transect or over
+/// an area, sound travels in the vertical plane through both places (N × 2D), and each plane is a
+/// slice of the ocean with a solver of its own. The slices and eigenrays that were used last are
+/// kept. Shared by threads; what comes out does not depend on what is kept.
+/// docs/theory/transect.md, docs/theory/area.md
 class PropagationPaths {
  public:
-  /// \param memory  of what was found; none: one of its own, which forgets what 64 pings did not
-  /// use
+  /// \param area  none: the ocean along the transect is all   \param memory  of what was found;
+  /// none: one of its own, which forgets what 64 pings did not use
   PropagationPaths(const Environment& ocean, const Transect& transect,
+                   std::shared_ptr<const Area> area = nullptr,
                    std::shared_ptr<PropagationMemory> memory = nullptr);
   PropagationPaths(const PropagationPaths&) = delete;
   PropagationPaths& operator=(const PropagationPaths&) = delete;
@@ -35,6 +41,11 @@ class PropagationPaths {
   [[nodiscard]] const EigenraySolver& along_transect() const noexcept { return along_; }
   [[nodiscard]] bool layered() const noexcept { return layered_; }
   [[nodiscard]] const Transect& transect() const noexcept { return transect_; }
+  /// Null if there is none.
+  [[nodiscard]] const std::shared_ptr<const Area>& area() const noexcept { return area_; }
+  [[nodiscard]] OceanOnMap on_map() const noexcept {
+    return {along_.environment(), transect_, area_.get()};
+  }
 
   [[nodiscard]] PropagationMemory& memory() const noexcept { return *memory_; }
   /// A key of this ocean, to which is added what else a result depends on.
@@ -43,8 +54,9 @@ class PropagationPaths {
     return ExactKey(kind, identity_, values...);
   }
 
-  /// The plane through a place in a direction [rad, clockwise from north].
-  [[nodiscard]] Plane plane(const Vec3& from, double bearing) const noexcept;
+  /// The plane through a place in a direction [rad, clockwise from north]. \param reach  how far
+  /// sound is followed in it [m]
+  [[nodiscard]] Plane plane(const Vec3& from, double bearing, double reach) const noexcept;
   /// The solver of a plane, source at range 0: one for all planes of a layered ocean.
   [[nodiscard]] std::shared_ptr<const EigenraySolver> solver(const Plane& plane) const;
 
@@ -55,10 +67,10 @@ class PropagationPaths {
     return transect_.range_of(place.x(), place.y());
   }
   /// Depth of surface and bottom at a place [m].
-  [[nodiscard]] double surface_depth(const Vec3& place) const noexcept;
-  [[nodiscard]] double bottom_depth(const Vec3& place) const noexcept;
+  [[nodiscard]] double surface_depth(const Vec3& place) const;
+  [[nodiscard]] double bottom_depth(const Vec3& place) const;
   /// Speed of sound at a place [m/s].
-  [[nodiscard]] double speed_at(const Vec3& place) const noexcept;
+  [[nodiscard]] double speed_at(const Vec3& place) const;
 
   /// All eigenrays from one place to another, sorted by delay. \param reuse  counts what was known
   [[nodiscard]] Arrivals find(const Vec3& from, const Vec3& to, double frequency,
@@ -72,6 +84,7 @@ class PropagationPaths {
 
  private:
   [[nodiscard]] Plane plane(const Vec3& from, const Vec3& to) const noexcept;
+  [[nodiscard]] Environment environment_of(const Plane& plane) const;
   [[nodiscard]] Arrivals search(const Vec3& from, const Vec3& to, double frequency,
                                 const PathLimits& limits) const;
   [[nodiscard]] ExactKey leg_key(Kept kind, const Vec3& from, const Vec3& to, double frequency,
@@ -81,12 +94,15 @@ class PropagationPaths {
 
   EigenraySolver along_;
   Transect transect_;
+  std::shared_ptr<const Area> area_;
   bool layered_;
   std::uint64_t identity_;  // of this ocean in a memory that several share
   std::shared_ptr<PropagationMemory> memory_;
 };
 
 void add_to(ExactKey& key, const PathLimits& limits);
+/// Adds what tells a plane from others of its ocean. \param area  whether that is one
+void add_to(ExactKey& key, const Plane& plane, bool area);
 /// Adds all that a path is followed by to a key: its angle and history.
 void add_path(ExactKey& key, const Arrival& path);
 

@@ -14,9 +14,19 @@ namespace {
 /// Neighbours this close in launch angle are no longer resolved [rad].
 constexpr double finest = 1e-12;
 
-/// What the mean grazing angle of two neighbours may miss that of the ray between by; halves are
-/// then right to a quarter of it [rad].
-constexpr double grazing_tolerance = 4e-3;
+/// How well neighbours must tell what lies between them.
+struct Tolerances {
+  double range = 0.02;  ///< of a cell's width: of range and way
+  /// What the mean grazing angle of two neighbours may miss that of the ray between by; halves are
+  /// then right to a quarter of it [rad].
+  double grazing = 4e-3;
+};
+
+/// Wide cells are asked for means over many places.
+Tolerances tolerances_of(const GroundGrid& grid) noexcept {
+  if (grid.wide() > grid.spacing()) return {.range = 0.1, .grazing = 0.02};
+  return {};
+}
 
 HermiteNode range_node(const StrikingRay& ray, const BoundaryHit& hit) {
   return {ray.angle, hit.range, hit.d_range};
@@ -32,12 +42,13 @@ class CellSearch {
   using Result = CellHit;
   static constexpr std::size_t coarse_levels = 0;
 
-  CellSearch(const RayTracer& tracer, double source_depth, const GroundLevel& level, double spacing,
-             double max_range, double frequency, const TraceLimits& limits)
+  CellSearch(const RayTracer& tracer, double source_depth, const GroundLevel& level,
+             const GroundGrid& grid, double max_range, double frequency, const TraceLimits& limits)
       : tracer_(tracer),
         source_depth_(source_depth),
         level_(level),
-        spacing_(spacing),
+        grid_(grid),
+        tolerances_(tolerances_of(grid)),
         max_range_(max_range),
         frequency_(frequency),
         limits_(limits),
@@ -57,7 +68,8 @@ class CellSearch {
                             a.hits[i].history == m.hits[i].history;
       if (!together) return parting_is_fine(a, m, b, i);
       const BoundaryHit &ha = a.hits[i], &hm = m.hits[i], &hb = b.hits[i];
-      if (std::min({ha.range, hm.range, hb.range}) > max_range_) continue;
+      const double nearest = std::min({ha.range, hm.range, hb.range});
+      if (nearest > max_range_) continue;
       const Hermite range(range_node(a, ha), range_node(b, hb));
       const Hermite time(time_node(a, ha), time_node(b, hb));
       // the slope tells what a lucky value does not
@@ -65,8 +77,9 @@ class CellSearch {
                          std::abs(time.value(m.angle) - hm.time) * hm.speed +
                          std::abs(range.slope(m.angle) - hm.d_range) * (b.angle - a.angle) / 8.0;
       // halves are right to a sixteenth of that where all is smooth, and to about that elsewhere
-      if (off > 0.02 * spacing_) return false;
-      if (std::abs(0.5 * (ha.grazing + hb.grazing) - hm.grazing) > grazing_tolerance) return false;
+      if (off > tolerances_.range * grid_.width_at(nearest)) return false;
+      if (std::abs(0.5 * (ha.grazing + hb.grazing) - hm.grazing) > tolerances_.grazing)
+        return false;
     }
     return true;
   }
@@ -96,7 +109,8 @@ class CellSearch {
         ++stopped;
     }
     if (nearest > max_range_ || stopped >= 2) return true;
-    return std::max(a.widest, b.widest) * (b.angle - a.angle) < 0.02 * spacing_;
+    return std::max(a.widest, b.widest) * (b.angle - a.angle) <
+           tolerances_.range * grid_.width_at(std::max(0.0, nearest));
   }
 
   /// Every cell centre between the hits of two rays.
@@ -125,12 +139,11 @@ class CellSearch {
     const double near_range = std::min(from_range, to_range);
     const double limit = std::min(std::max(from_range, to_range), max_range_);
     double alpha = near;
-    const double first = std::max(0.0, std::ceil(near_range / spacing_ - 0.5));
-    for (auto cell = static_cast<std::uint32_t>(first);; ++cell) {
-      const double r = (cell + 0.5) * spacing_;
+    for (auto cell = static_cast<std::uint32_t>(grid_.count(std::max(0.0, near_range)));; ++cell) {
+      const double r = grid_.range(cell);
       if (r >= limit) return;
       alpha = monotone_root(range, r, std::min(near, far), std::max(near, far), rising, alpha,
-                            1e-3 * spacing_);  // from the neighbour's
+                            1e-3 * grid_.spacing());  // from the neighbour's
       out.push_back(path(a, ha, b, hb, range, alpha, time.value(alpha), cell));
     }
   }
@@ -152,7 +165,7 @@ class CellSearch {
     const double floor =
         turn != 0.0 ? airy_floor(bend / (turn * turn), frequency_) * std::abs(turn) : 0.0;
     const double q = std::max(std::abs(slope), floor) * between(ha.q_per_d_range, hb.q_per_d_range);
-    const double r = (cell + 0.5) * spacing_;
+    const double r = grid_.range(cell);
     const double spreading = tube_amplitude(
         spreading_, {.speed = between(ha.speed, hb.speed),
                      .q = q,
@@ -179,7 +192,9 @@ class CellSearch {
   const RayTracer& tracer_;
   double source_depth_;
   GroundLevel level_;
-  double spacing_, max_range_, frequency_;
+  GroundGrid grid_;
+  Tolerances tolerances_;
+  double max_range_, frequency_;
   TraceLimits limits_;
   Spreading spreading_;
   RayTrajectory trajectory_;
@@ -188,10 +203,10 @@ class CellSearch {
 }  // namespace
 
 std::vector<CellHit> hits_on_cells(const RayTracer& tracer, double source_depth,
-                                   const GroundLevel& level, double spacing, double max_range,
-                                   double frequency, const FanLimits& limits) {
+                                   const GroundLevel& level, const GroundGrid& grid,
+                                   double max_range, double frequency, const FanLimits& limits) {
   // As many bounces before the hit as allowed: a hit on a boundary is itself one more.
-  TraceLimits trace{.max_range = max_range + spacing,
+  TraceLimits trace{.max_range = max_range + grid.wide(),
                     .min_depth = limits.min_depth,
                     .max_depth = limits.max_depth,
                     .max_surface_bounces = limits.max_surface_bounces,
@@ -202,9 +217,8 @@ std::vector<CellHit> hits_on_cells(const RayTracer& tracer, double source_depth,
                                                 : trace.max_bottom_bounces);
   trace.min_range = -max_range;
   const FanSplitting<CellSearch> fan(limits.lowest, limits.highest);
-  return fan.run([&] {
-    return CellSearch(tracer, source_depth, level, spacing, max_range, frequency, trace);
-  });
+  return fan.run(
+      [&] { return CellSearch(tracer, source_depth, level, grid, max_range, frequency, trace); });
 }
 
 }  // namespace asdic::detail

@@ -63,6 +63,12 @@ void VolumeLayer::describe(Fields& setting) {
   field.describe(setting);
 }
 
+void SeabedScattering::describe(Fields& field) {
+  field(required("class"), number, -1'000'000, 1'000'000,
+        "number of the kind in the map of environment.area.seabed");
+  field.one_of(required("kind"), law, "the law of scattering");
+}
+
 void ReverberationSettings::describe(Fields& field) {
   field("enabled", enabled, "whether there is any");
   field("azimuths", azimuths, 1, 3600, "sectors of a ring, at least");
@@ -82,6 +88,9 @@ void ReverberationSettings::describe(Fields& field) {
     bottom = ground ? std::optional(ground->law) : std::nullopt;
     bottom_field.statistics = ground.value_or(BottomScatterers{}).statistics;
   }
+  field("seabed", seabed, "kinds of sea floor that scatter by laws of their own");
+  if (field.checks() && !seabed.empty() && !bottom)
+    field.fault("seabed", "[reverberation.bottom] beside it, for all other kinds");
   field("volume", volume, "layers of the water that scatter");
 }
 

@@ -43,6 +43,14 @@ constexpr std::span<const std::string_view> words(ScattererSynthesis /*any*/) {
   return scatterer_synthesis_words;
 }
 
+/// How a kind of sea floor scatters that a map of kinds has.
+struct SeabedScattering {
+  int number = 0;  ///< in the map
+  AnyBottomScattering law = {};
+
+  void describe(Fields& field);
+};
+
 /// Reverberation of surface, bottom and volume as scatterers on polar grids.
 struct ReverberationSettings {
   bool enabled = true;
@@ -56,6 +64,7 @@ struct ReverberationSettings {
   ScattererField surface_field;
   std::optional<AnyBottomScattering> bottom;  ///< none: the bottom does not scatter
   ScattererField bottom_field = {.motion = {}, .statistics = {.coherence_time = infinity}};
+  std::vector<SeabedScattering> seabed;  ///< kinds that do not scatter as `bottom` says
   std::vector<VolumeLayer> volume;
   ScattererSynthesis synthesis = ScattererSynthesis::automatic;
   std::size_t most_returns =

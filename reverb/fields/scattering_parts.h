@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/random.h"
@@ -12,16 +13,18 @@ namespace asdic::detail {
 /// A boundary, or a sheet of a layer of the water: what scatters there, and how.
 struct ScatteringPart {
   GroundLevel level;
-  ScatteringSheet::Law law;
+  ScatteringSheet::Laws law;
   ScattererField field;
   Draw weights = Draw::surface_weight;  ///< purpose of their draws
   std::uint64_t id = 0;                 ///< 0: the surface, 1: the bottom, then the sheets
   double thickness = 0.0;               ///< of a sheet [m]
 };
 
-/// All that scatters. \param sound_speed  at the surface [m/s]
+/// All that scatters. \param sound_speed  at the surface [m/s]   \param winds  kinds that there are
+/// where wind is mapped (wind_kind())
 [[nodiscard]] std::vector<ScatteringPart> scattering_parts(const ReverberationSettings& settings,
-                                                           double wind_speed, double sound_speed);
+                                                           double wind_speed, double sound_speed,
+                                                           std::span<const int> winds = {});
 
 /// Moves a sheet aside that lies at the very depth of a platform: only paths along it would reach
 /// it. \param depth  of the platform [m]

@@ -15,15 +15,46 @@ namespace {
 /// How each cell's facet lies. A slope h′ along the transect is h′·cos β in the plane: the angle to
 /// the facet is that to its line in the plane, corrected for the part of its normal that sticks out
 /// of the plane.
-std::vector<CellTilt> tilts(const Boundary& boundary, double cos_beta, const BoundaryPaths& paths) {
-  std::vector<CellTilt> tilt;
-  if (!boundary.shape || cos_beta == 0.0) return tilt;
+std::vector<CellFacet> facets_over_transect(const Boundary& boundary, double cos_beta,
+                                            const BoundaryPaths& paths) {
+  std::vector<CellFacet> facets;
+  if (!boundary.shape || cos_beta == 0.0) return facets;
   for (std::size_t cell = 0; cell < paths.cells(); ++cell) {
     const double in_plane = boundary.shape->at(paths.range(cell)).slope;
     const double segment = std::hypot(1.0, in_plane / cos_beta);  // √(1 + h′²)
-    tilt.push_back({.grazing = std::hypot(1.0, in_plane) / segment, .area = segment});
+    facets.push_back({.grazing = std::hypot(1.0, in_plane) / segment, .area = segment});
   }
-  return tilt;
+  return facets;
+}
+
+/// The same of an area's floor, whose slope is (h_x, h_y): in the plane h_x sin B + h_y cos B.
+std::vector<CellFacet> facets_over_area(const Area& area, const Plane& plane,
+                                        const BoundaryPaths& paths) {
+  std::vector<CellFacet> facets;
+  const Vec2 way(std::sin(plane.bearing), std::cos(plane.bearing));
+  for (std::size_t cell = 0; cell < paths.cells(); ++cell) {
+    const Vec2 there = plane.place + paths.range(cell) * way;
+    const MapValue floor = area.floor().at(there.x(), there.y());
+    const double in_plane = floor.x * way.x() + floor.y * way.y();
+    const double area_ratio = std::sqrt(1.0 + floor.x * floor.x + floor.y * floor.y);
+    facets.push_back({.grazing = std::hypot(1.0, in_plane) / area_ratio,
+                      .area = area_ratio,
+                      .kind = area.seabed() ? area.seabed()->at(there.x(), there.y()) : 0});
+  }
+  return facets;
+}
+
+/// Of the flat surface of an area: what wind there is. Empty without a map of it.
+std::vector<CellFacet> winds_over_area(const Area& area, const Plane& plane,
+                                       const BoundaryPaths& paths) {
+  std::vector<CellFacet> facets;
+  if (!area.wind()) return facets;
+  const Vec2 way(std::sin(plane.bearing), std::cos(plane.bearing));
+  for (std::size_t cell = 0; cell < paths.cells(); ++cell) {
+    const Vec2 there = plane.place + paths.range(cell) * way;
+    facets.push_back({.kind = wind_kind(area.wind()->at(there.x(), there.y()).value)});
+  }
+  return facets;
 }
 
 /// \param speed  of sound at the fan's source [m/s]
@@ -45,7 +76,7 @@ std::size_t bytes_of(const BoundaryFan& fan) {
   std::size_t bytes = sizeof(BoundaryFan);
   for (const FanPlane& plane : fan.planes)
     bytes += sizeof(FanPlane) + plane.paths->bytes() + plane.paths->size() * sizeof(PathEnds) +
-             plane.tilt.size() * sizeof(CellTilt);
+             plane.facets.size() * sizeof(CellFacet);
   return bytes;
 }
 
@@ -65,7 +96,8 @@ const FanPlane& BoundaryFan::towards(double bearing) const noexcept {
   if (planes.size() == 1) return planes.front();
   const double turns = (bearing - first_bearing) / (2.0 * pi);
   const int sector = std::min(sectors - 1, static_cast<int>((turns - std::floor(turns)) * sectors));
-  return planes[static_cast<std::size_t>(std::min(sector, sectors - 1 - sector))];
+  return planes[static_cast<std::size_t>(mirrored ? std::min(sector, sectors - 1 - sector)
+                                                  : sector)];
 }
 
 struct BoundaryFans::Entry {
@@ -80,7 +112,9 @@ std::shared_ptr<const BoundaryFan> BoundaryFans::around(const Vec3& place, const
   const PathLimits& limits = settings.limits;
   ExactKey key = paths_.key(Kept::boundary_fan);
   key.add(level.boundary ? static_cast<int>(*level.boundary) : -1).add(level.depth);
-  key.add(layered ? 0.0 : paths_.plane(place, 0.0).origin).add(place.z()).add(settings.frequency);
+  if (!layered)
+    add_to(key, paths_.plane(place, paths_.transect_bearing(), 0.0), paths_.area() != nullptr);
+  key.add(place.z()).add(settings.frequency);
   key.add(settings.spacing)
       .add(settings.wide)
       .add(settings.max_range)
@@ -106,7 +140,9 @@ MemoryNeed BoundaryFans::need(const Settings& settings) const {
   constexpr double a_path = 2.0 * sizeof(BoundaryPath) + sizeof(PathEnds);
   const PathLimits& limits = settings.limits;
   const int bounces = std::max(limits.max_surface_bounces, limits.max_bottom_bounces);
-  const double planes = paths_.layered() ? 1.0 : 0.5 * (settings.sectors + 1),
+  const double planes = paths_.layered() ? 1.0
+                        : paths_.area()  ? settings.sectors
+                                         : 0.5 * (settings.sectors + 1),
                cells = planes * static_cast<double>(grid_of(settings).count(settings.max_range)),
                paths = 2.0 * (paths_.layered() ? followed_cycles(bounces) : bounces + 1.0) * cells;
   return {.where = "reverberation.ground_spacing",
@@ -135,24 +171,31 @@ BoundaryFan BoundaryFans::trace(const Vec3& place, const GroundLevel& level,
   const double speed = paths_.speed_at(place);
   if (paths_.layered()) {
     const auto paths = ground(paths_.along_transect());
-    return {.planes = {{.paths = paths, .ends = ends_of(*paths, speed), .tilt = {}}}};
+    return {.planes = {{.paths = paths, .ends = ends_of(*paths, speed), .facets = {}}}};
   }
   const int n = settings.sectors;
-  BoundaryFan fan{.planes = std::vector<FanPlane>(static_cast<std::size_t>((n + 1) / 2)),
-                  .first_bearing = paths_.transect_bearing(),
-                  .sectors = n};
-  const double origin = paths_.plane(place, 0.0).origin;
+  const bool mirrored = paths_.area() == nullptr;
+  BoundaryFan fan{
+      .planes = std::vector<FanPlane>(static_cast<std::size_t>(mirrored ? (n + 1) / 2 : n)),
+      .first_bearing = paths_.transect_bearing(),
+      .sectors = n,
+      .mirrored = mirrored};
   in_parallel(fan.planes.size(), [&](std::size_t i) {
-    const Plane plane{.origin = origin,
-                      .cos_beta = std::cos(2.0 * pi * (static_cast<double>(i) + 0.5) / n)};
+    const double turn = 2.0 * pi * (static_cast<double>(i) + 0.5) / n;
+    Plane plane = paths_.plane(place, fan.first_bearing + turn, settings.max_range);
+    plane.cos_beta = std::cos(turn);  // to the last bit alike in mirrored sectors
     const auto solver = paths_.solver(plane);
     const Environment& ocean = solver->environment();
     fan.planes[i].paths = ground(*solver);
     fan.planes[i].ends = ends_of(*fan.planes[i].paths, speed);
-    if (level.boundary)
-      fan.planes[i].tilt =
-          tilts(*level.boundary == BoundaryKind::surface ? ocean.surface : ocean.bottom,
-                plane.cos_beta, *fan.planes[i].paths);
+    if (!level.boundary) return;
+    const bool surface = *level.boundary == BoundaryKind::surface;
+    if (mirrored)
+      fan.planes[i].facets = facets_over_transect(surface ? ocean.surface : ocean.bottom,
+                                                  plane.cos_beta, *fan.planes[i].paths);
+    else
+      fan.planes[i].facets = (surface ? winds_over_area : facets_over_area)(*paths_.area(), plane,
+                                                                            *fan.planes[i].paths);
   });
   return fan;
 }

@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -9,13 +10,21 @@
 
 namespace asdic::detail {
 
-/// How a cell of a boundary that is not level answers, against the same cell seen in the plane of
-/// the rays alone.
-struct CellTilt {
+/// How a cell of a boundary that is not level, or not everywhere alike, answers, against the same
+/// cell seen in the plane of the rays alone.
+struct CellFacet {
   double grazing = 1.0;  ///< sin of the angle to the surface over sin of the angle to its line in
                          ///< the plane (BoundaryPath::grazing): √(1 + h′²cos²β)/√(1 + h′²)
   double area = 1.0;  ///< of the sloping facet over its horizontal projection: √(1 + h′²)
+  int kind = 0;       ///< of an area's floor: its number; of a surface under mapped wind: wind_kind
 };
+
+/// A surface under a map of wind scatters by the law of its wind, in steps of half a metre per
+/// second. \param wind_speed [m/s]
+[[nodiscard]] inline int wind_kind(double wind_speed) noexcept {
+  return static_cast<int>(std::lround(2.0 * wind_speed));
+}
+[[nodiscard]] inline double wind_of_kind(int kind) noexcept { return 0.5 * kind; }
 
 /// What is asked of a path's ends again and again.
 struct PathEnds {
@@ -29,17 +38,18 @@ struct PathEnds {
 /// The paths to a boundary in one vertical plane.
 struct FanPlane {
   std::shared_ptr<const BoundaryPaths> paths;
-  std::vector<PathEnds> ends;  ///< [paths->all()]
-  std::vector<CellTilt> tilt;  ///< [cells], empty where the boundary is level
+  std::vector<PathEnds> ends;     ///< [paths->all()]
+  std::vector<CellFacet> facets;  ///< [cells], empty where the boundary is level
 };
 
 /// The paths to a boundary all round a place. One plane serves all bearings of a layered ocean.
-/// Over a transect the plane of a bearing is that of the middle of its sector; sector 0 begins at
-/// the transect's bearing, and every two sectors mirrored about it share a plane.
+/// Elsewhere the plane of a bearing is that of the middle of its sector; sector 0 begins at the
+/// transect's bearing. Over a transect every two sectors mirrored about it share a plane.
 struct BoundaryFan {
   std::vector<FanPlane> planes;
   double first_bearing = 0.0;  ///< [rad]
   int sectors = 1;
+  bool mirrored = true;        ///< over a transect
   std::uint64_t identity = 0;  ///< for keys of what is worked out of it: no other fan's
 
   [[nodiscard]] const FanPlane& towards(double bearing) const noexcept;
@@ -53,7 +63,7 @@ struct BoundaryFan {
 class BoundaryFans {
  public:
   struct Settings {
-    int sectors = 36;        ///< planes all round, over a transect
+    int sectors = 36;        ///< planes all round, where the ocean varies
     double spacing = 50.0;   ///< of the grid along a plane [m]
     double wide = 0.0;       ///< of its cells further out, in layered water; at least the spacing
     double max_range = 1e5;  ///< [m]

@@ -27,9 +27,10 @@ struct Grazing {
   double angle, sine, cosine;
 };
 
-Grazing grazing_of(const BoundaryPath& path, const PathEnds& ends, const CellTilt* tilt) noexcept {
-  if (tilt == nullptr) return {path.grazing, ends.sine, ends.cosine};
-  const double sine = std::min(1.0, ends.sine * tilt->grazing);
+Grazing grazing_of(const BoundaryPath& path, const PathEnds& ends,
+                   const CellFacet* facet) noexcept {
+  if (facet == nullptr) return {path.grazing, ends.sine, ends.cosine};
+  const double sine = std::min(1.0, ends.sine * facet->grazing);
   return {std::asin(sine), sine, std::sqrt((1.0 - sine) * (1.0 + sine))};
 }
 
@@ -71,13 +72,13 @@ bool ScatteringSheet::bundled() const noexcept {
 }
 
 ScatteringSheet::ScatteringSheet(std::shared_ptr<const BoundaryFan> out,
-                                 std::shared_ptr<const BoundaryFan> back, Law law,
+                                 std::shared_ptr<const BoundaryFan> back, Laws laws,
                                  const SheetEnds& ends, const TransmitPattern& pattern,
                                  Groups groups)
     : out_(std::move(out)),
       back_(std::move(back)),
       groups_(std::move(groups)),
-      law_(std::move(law)),
+      laws_(std::move(laws)),
       ends_(ends),
       pattern_(pattern),
       azimuthally_symmetric_pattern_(pattern.azimuthally_symmetric() && out_->planes.size() == 1),
@@ -88,13 +89,20 @@ ScatteringSheet::ScatteringSheet(std::shared_ptr<const BoundaryFan> out,
       in_phase_(out_ == back_ && !receiver_moves_ &&
                 (ends.source.position - ends.receiver.position).norm() * ends.frequency <
                     0.25 * ends.source_speed) {
-  std::visit(
-      [&](const auto& one) {
-        auto& at = at_.emplace<std::vector<decltype(one.at(0.0))>>();
-        at.push_back(one.at(ends_.frequency));
-        for (const BandPoint& point : ends_.band) at.push_back(one.at(point.frequency));
-      },
-      law_);
+  const auto add = [&](const Law& law) {
+    std::visit(
+        [&](const auto& one) {
+          auto& at = at_.emplace_back().emplace<std::vector<decltype(one.at(0.0))>>();
+          at.push_back(one.at(ends_.frequency));
+          for (const BandPoint& point : ends_.band) at.push_back(one.at(point.frequency));
+        },
+        law);
+  };
+  add(laws_.usual);
+  for (const auto& [kind, law] : laws_.of_kind) {
+    add(law);
+    kinds_.push_back(kind);
+  }
   if (!groups_.out)
     groups_.out = std::make_shared<FanGroups>(*out_, PathResolution{}, ends_.frequency);
   if (!groups_.back)
@@ -116,8 +124,10 @@ void ScatteringSheet::weigh(Way way) {
   const FanGroups& groups = way == Way::out ? *groups_.out : *groups_.back;
   if (!groups.added()) return;
   const BoundaryFan& fan = way == Way::out ? *out_ : *back_;
-  const BackscatterTable backscatter =
-      std::visit([](const auto& at) { return BackscatterTable(at.front()); }, at_);
+  std::vector<BackscatterTable> tables;
+  for (const auto& of_law : at_)
+    tables.push_back(
+        std::visit([](const auto& at) { return BackscatterTable(at.front()); }, of_law));
   std::vector<std::vector<float>>& weights = way == Way::out ? out_weights_ : back_weights_;
   for (std::size_t p = 0; p < fan.planes.size(); ++p) {
     const BoundaryPaths& paths = *fan.planes[p].paths;
@@ -125,6 +135,9 @@ void ScatteringSheet::weigh(Way way) {
     for (std::size_t cell = 0; cell < paths.cells(); ++cell) {
       const std::span<const BoundaryPath> here = paths.paths(cell);
       const auto first = static_cast<std::size_t>(here.data() - paths.all().data());
+      const std::vector<CellFacet>& facets = fan.planes[p].facets;
+      const BackscatterTable& backscatter =
+          tables[law_of(facets.empty() ? nullptr : &facets[cell])];
       for (const PathGroup& group : groups.planes[p].groups(cell)) {
         const double strongest = backscatter(here[group.strongest].grazing);
         if (group.count < 2 || !(strongest > 0.0)) continue;
@@ -145,12 +158,20 @@ std::complex<double> ScatteringSheet::beam(const Leg& out, std::size_t path,
   return pattern.towards(out.bearing, out.paths[path].launch_elevation);
 }
 
-void ScatteringSheet::cross_sections(const ScatterSines& sines, double* sigma) const noexcept {
+void ScatteringSheet::cross_sections(std::size_t law, const ScatterSines& sines,
+                                     double* sigma) const noexcept {
   std::visit(
-      [&](const auto& law) {
-        for (const auto& at : law) *sigma++ = at(sines);
+      [&](const auto& at_frequencies) {
+        for (const auto& at : at_frequencies) *sigma++ = at(sines);
       },
-      at_);
+      at_[law]);
+}
+
+std::size_t ScatteringSheet::law_of(const CellFacet* facet) const noexcept {
+  if (facet == nullptr || kinds_.empty()) return 0;
+  const auto known = std::lower_bound(kinds_.begin(), kinds_.end(), facet->kind);
+  if (known == kinds_.end() || *known != facet->kind) return 0;
+  return 1 + static_cast<std::size_t>(known - kinds_.begin());
 }
 
 bool ScatteringSheet::azimuthally_symmetric() const noexcept {
@@ -179,7 +200,7 @@ ScatteringSheet::Leg ScatteringSheet::leg(Way way, const Vec2& end, const Vec2& 
   found.groups = found.grouped->groups(cell);
   found.bundles = found.grouped->bundles(cell);
   found.beyond = range - paths.range(cell);
-  if (!plane.tilt.empty()) found.tilt = &plane.tilt[cell];
+  if (!plane.facets.empty()) found.facet = &plane.facets[cell];
   found.first = static_cast<std::size_t>(found.paths.data() - paths.all().data());
   found.ends = plane.ends.data() + found.first;
   const auto& weights = way == Way::out ? out_weights_ : back_weights_;
@@ -273,7 +294,8 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
   // In one cell the same groups stand for the bundles of both ways: reciprocal pairs meet.
   take(back, one_cell ? chance : ~chance, pairs.back_taken_);
   const std::size_t outs = pairs.out_taken_.size(), backs = pairs.back_taken_.size();
-  if (drawn || out.tilt || back.tilt || pairs.sheet_ != this || pairs.out_ != out.first ||
+  const std::size_t law = law_of(out.facet);
+  if (drawn || out.facet || back.facet || pairs.sheet_ != this || pairs.out_ != out.first ||
       pairs.back_ != back.first || std::abs(pairs.turn_ - turn) > same_turn ||
       pairs.sigma_.size() != outs * backs * (1 + points)) {
     pairs.sheet_ = this;
@@ -302,7 +324,7 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
     const PathEnds& a_ends = out.ends[i];
     const std::complex<double>* const sent = &pairs.sent_[m * (1 + points)];
     if (sent[0] == 0.0 && points == 0) continue;
-    const Grazing grazing_in = grazing_of(a, a_ends, out.tilt);
+    const Grazing grazing_in = grazing_of(a, a_ends, out.facet);
     const double there = delay_beyond(a, out.beyond) + a_ends.down * below;
     for (std::size_t n = 0; n < backs; ++n) {
       // Pairs within a bundle are those of two draws: that of a group with itself is one of many.
@@ -345,10 +367,11 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
       const double gain = twice ? std::sqrt(2.0) : 1.0;
       const double before = std::norm(sent[0]) * std::norm(home[0]) * gain * gain;
       if (limits && points == 0 && before * ring * strongest <= least) continue;
-      const Grazing grazing_out = grazing_of(b, b_ends, back.tilt);
+      const Grazing grazing_out = grazing_of(b, b_ends, back.facet);
       double* const sigma = &pairs.sigma_[(m * backs + n) * (1 + points)];
       if (sigma[0] < 0.0) {
-        cross_sections({.angles = {.grazing_in = grazing_in.angle,
+        cross_sections(law,
+                       {.angles = {.grazing_in = grazing_in.angle,
                                    .grazing_out = grazing_out.angle,
                                    .azimuth = turn},
                         .sin_in = grazing_in.sine,
@@ -385,7 +408,7 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
                              .cross_section = sigma[0],
                              .grazing_in = grazing_in.angle,
                              .grazing_out = grazing_out.angle,
-                             .area = out.tilt ? out.tilt->area : 1.0,
+                             .area = out.facet ? out.facet->area : 1.0,
                              .leaving = out.direction,
                              .coming = coming,
                              .receiver = on,
@@ -539,7 +562,8 @@ void add(ExactKey& key, const Kinematics& end) {
 }  // namespace
 
 bool ScatteringSheet::add_to(ExactKey& key) const {
-  key.add_all(out_->identity, back_->identity, law_);
+  key.add_all(out_->identity, back_->identity, laws_.usual, laws_.of_kind.size());
+  for (const auto& [kind, law] : laws_.of_kind) key.add_all(kind, law);
   const auto& [source, receiver, legs, source_speed, receiver_speed, frequency, latest, band] =
       ends_;
   for (const auto& groups : {groups_.out, groups_.back}) {

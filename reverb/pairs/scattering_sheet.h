@@ -2,9 +2,13 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <concepts>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <span>
+#include <type_traits>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -62,6 +66,18 @@ struct TakenGroup {
 
 class ScatteringSheet;
 
+/// By which laws a boundary scatters.
+struct ScatteringLaws {
+  AnyScattering usual;
+  std::map<int, AnyScattering> of_kind = {};  ///< of cells of that CellFacet::kind
+
+  /// A law is laws.
+  template <std::convertible_to<AnyScattering> Model>
+  requires(!std::same_as<std::remove_cvref_t<Model>, ScatteringLaws>)
+      ScatteringLaws(Model&& law)  // NOLINT
+      : usual(std::forward<Model>(law)) {}
+};
+
 /// The pairs of paths through a place, and the memory that finding them takes: used again from
 /// place to place, nothing is allocated once it is large enough. Places of one ring that see the
 /// same cells under the same angles share their cross-sections.
@@ -118,6 +134,7 @@ class ScatteringSheet {
  public:
   /// Every law there is, as one list.
   using Law = AnyScattering;
+  using Laws = ScatteringLaws;
 
   /// Which paths are received as one, out and back.
   struct Groups {
@@ -126,7 +143,7 @@ class ScatteringSheet {
 
   /// \param groups  of those fans, the same for one fan; none: every path by itself
   ScatteringSheet(std::shared_ptr<const BoundaryFan> out, std::shared_ptr<const BoundaryFan> back,
-                  Law law, const SheetEnds& ends, const TransmitPattern& pattern,
+                  Laws laws, const SheetEnds& ends, const TransmitPattern& pattern,
                   Groups groups = {});
 
   /// All pairs of paths through a place, in the order of the tables, received before the record
@@ -170,7 +187,7 @@ class ScatteringSheet {
     std::span<const PathBundle> bundles;
     const PathEnds* ends = nullptr;  // [paths]
     const float* weights = nullptr;  // [paths], or none: all 1
-    const CellTilt* tilt = nullptr;
+    const CellFacet* facet = nullptr;
     Vec2 direction = Vec2::Zero();  // unit vector from the end to the place
     double bearing = 0.0;           // of it, where a table has bearings
     double range = 0.0;             // of the place [m]
@@ -181,7 +198,9 @@ class ScatteringSheet {
                                           std::size_t point) const noexcept;
   /// σ of the paths that out and back are at a place. \param sigma  [1 + points]: at the centre,
   /// then at those of the band [1/sr]
-  void cross_sections(const ScatterSines& sines, double* sigma) const noexcept;
+  void cross_sections(std::size_t law, const ScatterSines& sines, double* sigma) const noexcept;
+  /// Which of the laws a cell has.
+  [[nodiscard]] std::size_t law_of(const CellFacet* facet) const noexcept;
   enum class Way { out, back };
   [[nodiscard]] Leg leg(Way way, const Vec2& end, const Vec2& place, bool bearing) const noexcept;
   /// The groups that are followed: all, or one of each bundle.
@@ -207,9 +226,11 @@ class ScatteringSheet {
   /// Of every path, [plane][path]: √√ of its backscatter over that of the strongest of its group,
   /// which √σ of a pair of groups is told for. Empty where no paths are added.
   std::vector<std::vector<float>> out_weights_, back_weights_;
-  Law law_;
+  Laws laws_;
   SheetEnds ends_;
-  AtFrequencies<Law> at_;  // the centre and each point of the band
+  // Of the usual law, then of those of the kinds: the centre and each point of the band.
+  std::vector<AtFrequencies<Law>> at_;
+  std::vector<int> kinds_;  // of at_[1 …], increasing
   const TransmitPattern& pattern_;
   bool azimuthally_symmetric_pattern_, receiver_moves_, moving_, one_place_;
   bool in_phase_;  // so close together and at rest that a pair and its reciprocal are received as

@@ -156,8 +156,7 @@ SentUp sent_up(const Environment& ocean, double frequency) {
 NoiseField noise_field(const Scenario& scenario, int array) {
   const NoiseSettings& asked = scenario.noise;
   NoiseField field{asked.coherence, asked.directions};
-  if (!asked.any() || asked.coherence != NoiseCoherence::surface ||
-      varies_with_range(scenario.environment))
+  if (!asked.any() || asked.coherence != NoiseCoherence::surface || ocean_on_map(scenario).varies())
     return field;
   const double frequency = Pulse(pulse_of(scenario, 0)).centre_frequency();
   constexpr double received = 1e-3;

@@ -7,8 +7,7 @@
 namespace asdic::detail {
 
 double speed_at(const Scenario& scenario, const Vec3& place) {
-  const double along = scenario.transect.range_of(place.x(), place.y());
-  return sound_speed(scenario.environment, along, place.z()).c;
+  return ocean_on_map(scenario).speed_at(place);
 }
 
 double plane_wave_error(const Listening& here, const Front& front, const Carried& point,

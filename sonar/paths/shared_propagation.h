@@ -27,16 +27,16 @@ class SharedPropagation {
 
   /// The paths of an ocean: those that are there if one is equal, number by number; else new ones.
   /// \param known  is told which
-  [[nodiscard]] std::shared_ptr<const PropagationPaths> paths(const Environment& ocean,
-                                                              const Transect& transect,
-                                                              bool* known = nullptr);
+  [[nodiscard]] std::shared_ptr<const PropagationPaths> paths(
+      const Environment& ocean, const Transect& transect,
+      const std::shared_ptr<const Area>& area = nullptr, bool* known = nullptr);
 
   [[nodiscard]] std::size_t bytes() const { return memory_->bytes(); }  ///< kept at present
 
  private:
   using Paths = std::shared_ptr<const PropagationPaths>;
   /// Null if there is none that is equal.
-  [[nodiscard]] Paths find(const Environment& ocean, const Transect& transect);
+  [[nodiscard]] Paths find(const Environment& ocean, const Transect& transect, const Area* area);
 
   std::shared_ptr<PropagationMemory> memory_;
   std::mutex lock_;

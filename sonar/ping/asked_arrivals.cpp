@@ -49,7 +49,7 @@ Leg leg_to(const PingSimulator& simulator, int ping, const AskedReceiver& receiv
   const double bearing = receiver.bearing  ? *receiver.bearing
                          : paths.layered() ? 0.0
                                            : scenario.transect.bearing;
-  const auto plane = paths.solver(paths.plane(platform, bearing));
+  const auto plane = paths.solver(paths.plane(platform, bearing, receiver.range));
   Leg leg{.kind = Leg::Kind::source_to_receiver, .bearing = bearing, .range = receiver.range};
   const double from = depth_in_water(plane->environment(), "source_depth",
                                      receiver.source_depth.value_or(platform.z()));

@@ -36,8 +36,10 @@ constexpr std::size_t most_patch_rows = 2000;
 
 std::shared_ptr<const PropagationPaths> paths_of(const Scenario& scenario,
                                                  SharedPropagation* shared, bool& known) {
-  if (shared != nullptr) return shared->paths(scenario.environment, scenario.transect, &known);
-  return std::make_shared<const PropagationPaths>(scenario.environment, scenario.transect);
+  if (shared != nullptr)
+    return shared->paths(scenario.environment, scenario.transect, scenario.area, &known);
+  return std::make_shared<const PropagationPaths>(scenario.environment, scenario.transect,
+                                                  scenario.area);
 }
 
 double end_of(const Recording& recording) {

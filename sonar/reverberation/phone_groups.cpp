@@ -15,10 +15,10 @@ double height_of(const Scenario& scenario, const Vec3& place) {
   const ReverberationSettings& sea = scenario.reverberation;
   double least = infinity;
   if (!sea.enabled) return least;
-  const double along = scenario.transect.range_of(place.x(), place.y());
+  const OceanOnMap ocean = ocean_on_map(scenario);
   const auto sheet = [&](double depth) { least = std::min(least, std::abs(depth - place.z())); };
-  if (sea.surface_scatters) sheet(scenario.environment.surface.depth_at(along));
-  if (sea.bottom) sheet(scenario.environment.bottom.depth_at(along));
+  if (sea.surface_scatters) sheet(ocean.surface_depth(place));
+  if (sea.bottom) sheet(ocean.bottom_depth(place));
   for (const VolumeLayer& layer : sea.volume) sheet(std::clamp(place.z(), layer.top, layer.bottom));
   return least;
 }

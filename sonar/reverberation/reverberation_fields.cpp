@@ -107,22 +107,39 @@ ReverberationFields::ReverberationFields(const Scenario& scenario, const Propaga
       spacing_(asdic::detail::ground_spacing(scenario.reverberation, scenario.environment,
                                              widest.bandwidth_99(),
                                              speed_at_surface(scenario, paths))),
-      fastest_water_(asdic::detail::fastest_water(scenario.environment)),
+      fastest_water_(asdic::detail::fastest_water(scenario)),
       resolved_sectors_(scenario.reverberation.resolve_azimuth
                             ? resolved_sectors(scenario, speed_at_surface(scenario, paths))
-                            : 1) {}
+                            : 1) {
+  if (!scenario.area || !scenario.area->wind()) return;
+  const double heard =
+      0.5 * fastest_water_ * (scenario.pings.recording_start + scenario.pings.recording_duration);
+  const auto [least, most] =
+      scenario.area->winds(scenario.platforms[0].track.at(0.0).position.head<2>(), heard + 20e3);
+  for (int kind = wind_kind(least); kind <= wind_kind(most); ++kind) winds_.push_back(kind);
+}
 
 int ReverberationFields::sectors(double reach) const {
   const ReverberationSettings& settings = scenario_.reverberation;
   const double cells = reach / spacing_ * settings.scatterers_per_cell;
   const double most = 2.0 * static_cast<double>(settings.most_returns) / std::max(1.0, cells);
   const double wanted = std::min(static_cast<double>(resolved_sectors_), std::floor(most));
-  return std::max(settings.azimuths, static_cast<int>(wanted));
+  return std::max(planes(reach), static_cast<int>(wanted));
+}
+
+int ReverberationFields::planes(double reach) const {
+  const int least = scenario_.reverberation.azimuths;
+  if (!scenario_.area) return least;
+  // Two steps of the grid apart half way to where sound is still heard.
+  const Vec3 place = scenario_.platforms[0].track.at(0.0).position;
+  const double apart = 2.0 * scenario_.area->spacing(place.head<2>());
+  constexpr double most = 72.0;
+  return std::max(least, static_cast<int>(std::min(most, std::ceil(pi * reach / apart))));
 }
 
 std::vector<ScatteringPart> ReverberationFields::parts() const {
   return scattering_parts(scenario_.reverberation, scenario_.wind_speed,
-                          speed_at_surface(scenario_, paths_));
+                          speed_at_surface(scenario_, paths_), winds_);
 }
 
 bool ReverberationFields::forgets_places(const ScatteringPart& part,
@@ -139,6 +156,14 @@ bool ReverberationFields::seas_compared(const ScattererField& field) const {
                      [&](const ReceiverArray& array) {
                        return array.platform != scenario_.arrays.front().platform;
                      });
+}
+
+double ReverberationFields::wide_cells(const Pulse& pulse, Ground ground,
+                                       double reach) const noexcept {
+  // Over an area no facet is narrower.
+  constexpr double cells = 1000.0;
+  if (scenario_.area) return reach / cells;
+  return ground == Ground::means && paths_.layered() ? wide_cells(pulse) : 0.0;
 }
 
 double ReverberationFields::wide_cells(const Pulse& pulse) noexcept {
@@ -183,14 +208,13 @@ void ReverberationFields::meet(ScatteringPart part, const ReverberationContext& 
   const double moved = way_of_receiver(ends);
   const double apart = (source - receiver).norm() + moved;
 
-  BoundaryFans::Settings fan = {
-      .sectors = settings.azimuths,
-      .spacing = spacing_,
-      .wide = ground == Ground::means && paths_.layered() ? wide_cells(context.pulse) : 0.0,
-      // in steps, so that a slow drift finds what is kept
-      .max_range = reach + spacing_ + 500.0 * std::ceil(apart / 1000.0),
-      .frequency = ends.frequency,
-      .limits = {}};
+  BoundaryFans::Settings fan = {.sectors = planes(reach),
+                                .spacing = spacing_,
+                                .wide = wide_cells(context.pulse, ground, reach),
+                                // in steps, so that a slow drift finds what is kept
+                                .max_range = reach + spacing_ + 500.0 * std::ceil(apart / 1000.0),
+                                .frequency = ends.frequency,
+                                .limits = {}};
   ends.source_speed = paths_.speed_at(ends.source.position);
   ends.receiver_speed = paths_.speed_at(ends.receiver.position);
   move_aside(part, ends.source.position.z());
@@ -258,7 +282,7 @@ void ReverberationFields::meet(ScatteringPart part, const ReverberationContext& 
          .boundary = part.id,
          .depth = depth(ends.source.position),
          .thickness = part.thickness,
-         .bearings = settings.azimuths,
+         .bearings = fan.sectors,
          // Who lies this far off an end is nearer to it than half its range only within:
          .divided_below =
              2.0 * std::max((source - anchor.place).norm(), farthest_phone(anchor.place)),

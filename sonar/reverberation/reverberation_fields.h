@@ -43,6 +43,8 @@ class ReverberationFields {
   /// Cells for means over many scatterers: places that a level, a covariance or streams look at lie
   /// further apart [m].
   [[nodiscard]] static double wide_cells(const Pulse& pulse) noexcept;
+  /// Of those that a fan is followed to. \param reach  of them [m]
+  [[nodiscard]] double wide_cells(const Pulse& pulse, Ground ground, double reach) const noexcept;
   /// Adds the fields of a part that a ping receives, one for every anchor.
   void meet(ScatteringPart part, const ReverberationContext& context, Ground ground,
             std::vector<ScatteringField>& fields) const;
@@ -52,12 +54,15 @@ class ReverberationFields {
   /// Of a ring: as many as are resolved, but no more scatterers in all rings than twice the most
   /// returns, and no fewer sectors than the scenario says. \param reach  of the rings [m]
   [[nodiscard]] int sectors(double reach) const;
+  /// Vertical planes around a place: as many as settings and the grid of an area ask for.
+  [[nodiscard]] int planes(double reach) const;
 
   const Scenario& scenario_;
   const PropagationPaths& paths_;
   BoundaryFans fans_;
   double spacing_, fastest_water_;
   int resolved_sectors_;
+  std::vector<int> winds_;  // kinds of them (wind_kind()) that are heard, where they are mapped
 };
 
 }  // namespace asdic::detail

@@ -15,7 +15,7 @@ ReverberationModel::ReverberationModel(const Scenario& scenario, const Propagati
 
 std::vector<ScatteringSheet::Law> ReverberationModel::laws() const {
   std::vector<ScatteringSheet::Law> found;
-  for (const ScatteringPart& part : fields_.parts()) found.push_back(part.law);
+  for (const ScatteringPart& part : fields_.parts()) found.push_back(part.law.usual);
   return found;
 }
 

@@ -20,6 +20,16 @@ double fastest_water(const Environment& ocean) {
   return fastest;
 }
 
+double fastest_water(const Scenario& scenario) {
+  const double along = fastest_water(scenario.environment);
+  if (!scenario.area || !scenario.area->water()) return along;
+  constexpr double no_slower = 1600.0;
+  const double heard =
+      0.5 * no_slower * (scenario.pings.recording_start + scenario.pings.recording_duration);
+  const Vec3 place = scenario.platforms[0].track.at(0.0).position;
+  return std::max(along, scenario.area->bounds(place.head<2>(), heard).fastest);
+}
+
 double fastest(const Track& track) {
   double speed = track.waypoints.empty() ? track.start.velocity.norm() : 0.0;
   for (std::size_t i = 0; i + 1 < track.waypoints.size(); ++i) {

@@ -12,5 +12,7 @@ namespace asdic::detail {
 
 /// Fastest speed of sound anywhere in the water [m/s].
 [[nodiscard]] double fastest_water(const Environment& ocean);
+/// The same of all that is heard of a scenario's ocean about its first platform.
+[[nodiscard]] double fastest_water(const Scenario& scenario);
 
 }  // namespace asdic::detail

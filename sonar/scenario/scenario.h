@@ -1,10 +1,11 @@
 #pragma once
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "raytrace/ocean/environment.h"
-#include "raytrace/ocean/transect.h"
+#include "raytrace/area/ocean_on_map.h"
 #include "reverb/fields/reverberation_settings.h"
 #include "sonar/scenario/array.h"
 #include "sonar/scenario/interferer.h"
@@ -22,8 +23,10 @@ namespace asdic::detail {
 struct Scenario {
   std::string title;
   std::uint64_t seed = 1;
-  Environment environment;
+  Environment environment;                       ///< along the transect
   Transect transect;                             ///< where its range axis lies on the map
+  std::optional<GeographicPlace> origin;         ///< where the map's [0, 0] is; none: not known
+  std::shared_ptr<const Area> area;              ///< the ocean over the map; none: the transect's
   double wind_speed = 10.0;                      ///< at 10 m [m/s]
   std::vector<Platform> platforms = {{}};        ///< carry transmitters and arrays
   std::vector<Transmitter> transmitters = {{}};  ///< [n ≥ 1]
@@ -41,6 +44,11 @@ struct Scenario {
   std::vector<std::string> overrides;  ///< "key.path=value" that changed the text's values
   std::vector<std::string> notes;      ///< what the reader did that the user should know
 };
+
+/// The ocean as it lies on the map. The scenario outlives it.
+[[nodiscard]] inline OceanOnMap ocean_on_map(const Scenario& scenario) noexcept {
+  return {scenario.environment, scenario.transect, scenario.area.get()};
+}
 
 /// Where a transmitter is and how it moves: asked once, of a scenario as it is read. What asks
 /// again and again has a PingGeometry or an ArrayMotion (sonar/scenario/ping_geometry.h,

@@ -18,6 +18,7 @@
 #include "sonar/noise/noise_in_guide.h"
 #include "sonar/paths/enough_bounces.h"
 #include "sonar/reverberation/phone_groups.h"
+#include "sonar/scenario/ping_bounds.h"
 #include "sonar/scenario/sampling.h"
 #include "sonar/scenario/transmission.h"
 
@@ -215,10 +216,31 @@ std::string noise_of_a_bent_line(const Scenario& scenario) {
   return "";
 }
 
+std::string beyond_the_map(const Scenario& scenario) {
+  if (!scenario.area) return "";
+  const double heard = 0.5 * fastest_water(scenario.environment) *
+                       (scenario.pings.recording_start + scenario.pings.recording_duration);
+  double nearest = heard;
+  int towards = 0;
+  for (const Platform& platform : scenario.platforms)
+    for (int bearing = 0; bearing < 360; bearing += 5) {
+      const Vec2 place = platform.track.at(0.0).position.head<2>();
+      const double reach = scenario.area->reach_on_map(place, radians(bearing), nearest);
+      if (reach < nearest) nearest = reach, towards = bearing;
+    }
+  if (nearest >= heard) return "";
+  char text[240];
+  std::snprintf(text, sizeof text,
+                "environment.area.bathymetry: sound is heard from up to %.3g km, and the map ends "
+                "%.3g km away at %d degrees; beyond it its edge goes on",
+                heard / 1000.0, nearest / 1000.0, towards);
+  return text;
+}
+
 std::string noise_from_below(const Scenario& scenario) {
   constexpr double received = 0.1;  // of what comes down
   if (!scenario.noise.any() || scenario.noise.coherence != NoiseCoherence::surface ||
-      !varies_with_range(scenario.environment))
+      !ocean_on_map(scenario).varies())
     return "";
   const SentUp most = sent_up(scenario.environment, pulse_frequencies(scenario).lowest);
   if (most.share < received) return "";
@@ -279,7 +301,7 @@ std::string over_a_transect(const Environment& ocean) {
 std::string left_out_diffraction(const Scenario& scenario) {
   if (!scenario.propagation.diffraction || scenario.targets.empty()) return "";
   const Environment& ocean = scenario.environment;
-  if (varies_with_range(ocean)) return over_a_transect(ocean);
+  if (ocean_on_map(scenario).varies()) return over_a_transect(ocean);
   if (!is_layered(ocean))
     return "propagation: where losses vary with depth sound in shadows, beyond caustics and out of "
            "ducts is left out";
@@ -353,7 +375,7 @@ std::vector<std::string> warnings(const Scenario& scenario) {
                 checks::noise_table_band(scenario), checks::surface_scattering_range(scenario),
                 checks::reverberation_plane_waves(scenario), checks::noise_of_a_bent_line(scenario),
                 checks::noise_from_below(scenario), checks::left_out_diffraction(scenario),
-                checks::scattering_energy(scenario)},
+                checks::beyond_the_map(scenario), checks::scattering_energy(scenario)},
                all);
   return all;
 }

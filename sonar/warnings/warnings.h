@@ -32,6 +32,8 @@ namespace checks {
 [[nodiscard]] std::string noise_from_below(const Scenario& scenario);
 /// Targets, and an ocean or a range for which sound where no ray goes is not computed.
 [[nodiscard]] std::string left_out_diffraction(const Scenario& scenario);
+/// Sound that is heard from beyond an area's maps: there their edges go on.
+[[nodiscard]] std::string beyond_the_map(const Scenario& scenario);
 /// A scattering law of a rough boundary that hands out more energy than comes in.
 [[nodiscard]] std::string scattering_energy(const Scenario& scenario);
 

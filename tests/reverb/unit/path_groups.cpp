@@ -27,7 +27,7 @@ FanPlane plane() {
   FanPlane found{.paths = std::make_shared<BoundaryPaths>(boundary_paths(
                      solver, 30.0, BoundaryKind::bottom, 40.0, 10e3, frequency, limits)),
                  .ends = {},
-                 .tilt = {}};
+                 .facets = {}};
   for (const BoundaryPath& p : found.paths->all())
     found.ends.push_back({.launch_level = std::cos(p.launch_elevation) / c,
                           .launch_down = -std::sin(p.launch_elevation) / c,

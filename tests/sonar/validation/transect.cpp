@@ -394,7 +394,7 @@ TEST(Transect, GrazingAnglesAreThoseToTheTrueFacet) {
   PathPairs pairs;
   for (int sector = 0; sector < 6; ++sector) {
     const double beta = 2.0 * pi * (sector + 0.5) / 6.0, bearing = s.transect.bearing + beta;
-    if (fan->towards(bearing).tilt.empty()) continue;
+    if (fan->towards(bearing).facets.empty()) continue;
     int found = 0;
     for (double range = 10.0; range < 4000.0; range += 20.0) {
       sheet.pairs_at(platform.head<2>() + range * Vec2(std::sin(bearing), std::cos(bearing)),

@@ -1,0 +1,198 @@
+#include "io/scenario/area.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "core/quantities.h"
+#include "core/text.h"
+#include "io/climatology/map_reader.h"
+#include "io/scenario/materials/materials.h"
+#include "io/settings/reader.h"
+
+namespace asdic::detail::scenario {
+namespace {
+
+/// A map in a file.
+struct MapTable {
+  MapFile map = {};
+
+  void describe(Fields& field) {
+    field.file(required("file"), map.file, "a readable netCDF file", "with the map");
+    field(by_default("variable", "by its standard_name or a usual name"), map.variable,
+          "its name in the file");
+  }
+};
+
+/// [environment.area.bathymetry]
+struct BathymetryTable {
+  MapTable map = {};
+  MapInterpolation interpolation = MapInterpolation::bicubic;
+
+  void describe(Fields& field) {
+    map.describe(field);
+    field("interpolation", interpolation, "how the floor runs between the places of the grid");
+  }
+};
+
+/// [[environment.area.seabed.class]]
+struct ClassTable {
+  int number = 0;
+  std::string name = {};
+  AnyMaterialForm form = {};
+
+  void describe(Fields& field) {
+    field(required("number"), number, -1'000'000, 1'000'000, "in the map");
+    field(seldom("name"), name, "of the kind of sea floor");
+    field.one_of(required("kind"), form, "what is behind the boundary");
+  }
+};
+
+/// [environment.area.seabed]
+struct SeabedTable {
+  MapTable map = {};
+  std::vector<ClassTable> classes = {};
+
+  void describe(Fields& field) {
+    map.describe(field);
+    field("class", classes, "what a number of the map stands for");
+    if (field.checks() && classes.empty())
+      field.fault("class", "[[environment.area.seabed.class]] for every number", "none");
+  }
+};
+
+/// [environment.area], but for the kinds of sea floor where it is read.
+struct AreaTable {
+  double easting = 0.0, northing = 0.0;
+  BathymetryTable bathymetry = {};
+  std::optional<MapTable> sound_speed = {};
+  std::optional<SeabedTable> seabed = {};
+  std::optional<MapTable> wind = {};
+
+  void describe(Fields& field) {
+    constexpr Quantity axis{.noun = "coordinate", .unit = "m", .low = -1e8, .high = 1e8};
+    field(seldom("easting"), easting, axis, "of the map's [0, 0] on projected grids");
+    field(seldom("northing"), northing, axis, "of the map's [0, 0] on projected grids");
+    field(required("bathymetry"), bathymetry, "depth of the sea floor over the map");
+    field("sound_speed", sound_speed, "over depth and map");
+    field("seabed", seabed, "the kind of sea floor, by number");
+    field("wind", wind, "at 10 m height [m/s]");
+  }
+};
+
+AreaTable table_of(const AreaSettings& settings) {
+  AreaTable table{.easting = settings.easting, .northing = settings.northing};
+  table.bathymetry = {{settings.bathymetry}, settings.interpolation};
+  if (settings.sound_speed) table.sound_speed = MapTable{*settings.sound_speed};
+  if (settings.seabed) {
+    table.seabed = SeabedTable{{*settings.seabed}, {}};
+    for (const SeabedClass& one : settings.classes) {
+      ClassTable& shown = table.seabed->classes.emplace_back(ClassTable{one.number, one.name});
+      find_form(one.material, shown.form);
+    }
+  }
+  if (settings.wind) table.wind = MapTable{*settings.wind};
+  return table;
+}
+
+}  // namespace
+
+AreaReading::AreaReading(TomlTable table, const OceanReading& reading,
+                         const std::optional<GeographicPlace>& origin)
+    : table_(std::move(table)), reading_(reading) {
+  KnownSettings known{.numbers = {{"frequency", reading.frequency},
+                                  {"water.speed", 1500.0},
+                                  {"water.density", 1025.0}},
+                      .folder = reading.folder};
+  AreaTable form;
+  TomlReader reader(table_, known);
+  form.describe(reader);
+  settings_ = {.origin = origin,
+               .easting = form.easting,
+               .northing = form.northing,
+               .bathymetry = form.bathymetry.map.map,
+               .interpolation = form.bathymetry.interpolation};
+  if (form.sound_speed) settings_.sound_speed = form.sound_speed->map;
+  if (form.seabed) settings_.seabed = form.seabed->map.map;
+  if (form.wind) settings_.wind = form.wind->map;
+
+  const auto open = [&](const MapFile& map, const MapKind& kind, const char* key, bool volume) {
+    OpenedMap opened =
+        open_map(reading.folder / map.file, map.variable, kind, origin ? origin->longitude : 0.0);
+    if (opened.geographic && !origin)
+      throw table_.fault(key,
+                         "[environment.origin] with latitude_deg and longitude_deg, where the "
+                         "map's [0, 0] is",
+                         "a grid of longitude and latitude, " + opened.name);
+    if (opened.depths.empty() == volume)
+      throw table_.fault(key, volume ? "a variable over depth and map" : "a map without depths",
+                         opened.name);
+    return opened;
+  };
+  const auto frame = [&](const OpenedMap& opened) {
+    return opened.geographic ? MapFrame::geographic(*origin)
+                             : MapFrame::projected(settings_.easting, settings_.northing);
+  };
+  const OpenedMap floor = open(settings_.bathymetry, bathymetry_map, "bathymetry", false);
+  floor_.emplace(floor.grid, frame(floor), settings_.interpolation, floor.heights ? -1.0 : 1.0,
+                 MapOrigin{floor.name});
+  if (!floor_->covers(0.0, 0.0))
+    throw table_.fault("bathymetry", "a map that holds the scenario's [0, 0]", floor.name);
+  if (settings_.sound_speed) {
+    const OpenedMap water = open(*settings_.sound_speed, sound_speed_map, "sound_speed", true);
+    water_.emplace(water.grid, frame(water), water.depths, MapOrigin{water.name});
+  }
+  if (settings_.seabed) {
+    const OpenedMap seabed = open(*settings_.seabed, seabed_map, "seabed", false);
+    seabed_.emplace(seabed.grid, frame(seabed), MapOrigin{seabed.name});
+  }
+  if (settings_.wind) {
+    const OpenedMap wind = open(*settings_.wind, wind_map, "wind", false);
+    wind_.emplace(wind.grid, frame(wind), MapInterpolation::faceted, 1.0, MapOrigin{wind.name});
+  }
+}
+
+std::optional<double> AreaReading::wind_speed(double x, double y) const {
+  if (!wind_) return std::nullopt;
+  return wind_->at(x, y).value;
+}
+
+std::shared_ptr<const Area> AreaReading::build(const Environment& ocean) {
+  std::map<int, BoundaryMaterial> materials;
+  const double depth = ocean.bottom.depth;
+  const WaterAtBoundary water{.speed = ocean.water.at(depth).c,
+                              .density = ocean.water_density.at(depth)};
+  if (settings_.seabed) {
+    TomlTable seabed = table_.table("seabed");
+    for (TomlTable& table : seabed.tables("class")) {
+      KnownSettings known{.numbers = {{"frequency", reading_.frequency},
+                                      {"water.speed", water.speed},
+                                      {"water.density", water.density}},
+                          .folder = reading_.folder};
+      ClassTable one;
+      TomlReader reader(table, known);
+      one.describe(reader);
+      const MaterialPlace place{table, reading_, water};
+      const auto material = std::visit(
+          [&](const auto& form) { return BoundaryMaterial(form.build(place)); }, one.form);
+      if (!materials.emplace(one.number, material).second)
+        throw table.fault("number", "a number that no other class has");
+      settings_.classes.push_back({one.number, std::move(one.name), material});
+    }
+  }
+  table_.finish();
+  return std::make_shared<const Area>(Area::Maps{.floor = *floor_,
+                                                 .water = water_,
+                                                 .seabed = seabed_,
+                                                 .materials = std::move(materials),
+                                                 .wind = wind_},
+                                      ocean, settings_);
+}
+
+void describe_area(Fields& field, const AreaSettings* settings) {
+  std::optional<AreaTable> table;
+  if (settings != nullptr) table = table_of(*settings);
+  field("area", table, "an ocean over the map");
+}
+
+}  // namespace asdic::detail::scenario

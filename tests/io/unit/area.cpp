@@ -1,0 +1,229 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/error.h"
+#include "io/climatology/map_reader.h"
+#include "io/scenario/scenario_reader.h"
+#include "io/scenario/writer.h"
+#include "io/settings/writer.h"
+#include "support/netcdf_writer.h"
+#include "support/temporary_directory.h"
+
+namespace asdic::detail {
+namespace {
+
+using support::NetcdfWriter;
+using support::TemporaryDirectory;
+using testing::HasSubstr;
+
+std::vector<double> even(double begin, double step, std::size_t n) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < n; ++i) values.push_back(begin + step * double(i));
+  return values;
+}
+
+/// Heights as GEBCO stores them, but from north to south: −1000 m and 2 m deeper with every place
+/// to the east, 5 m with every one to the north, from 20.3 W 39.7 N on.
+void write_heights(const std::filesystem::path& path) {
+  NetcdfWriter file(path);
+  constexpr std::size_t n = 121;
+  file.axis("lat", even(40.3, -0.005, n), {{"units", "degrees_north"}});
+  file.axis("lon", even(339.7, 0.005, n), {{"units", "degrees_east"}});
+  std::vector<double> heights;
+  for (std::size_t j = 0; j < n; ++j)
+    for (std::size_t i = 0; i < n; ++i)
+      heights.push_back(-1000.0 - 2.0 * double(i) - 5.0 * double(n - 1 - j));
+  file.variable("elevation", NC_SHORT, {"lat", "lon"}, heights, {{"units", "m"}});
+}
+
+/// Speeds of two levels, the lower one missing in the west; kinds; wind.
+void write_others(const std::filesystem::path& path) {
+  NetcdfWriter file(path, NC_NETCDF4);
+  file.axis("depth", {0.0, 100.0, 3000.0}, {{"units", "m"}, {"positive", "down"}});
+  file.axis("lat", even(39.0, 0.25, 9), {{"units", "degrees_north"}});
+  file.axis("lon", even(-21.0, 0.25, 9), {{"units", "degrees_east"}});
+  std::vector<double> speeds;
+  for (const double c : {1520.0, 1500.0, -999.0})
+    for (std::size_t j = 0; j < 9; ++j)
+      for (std::size_t i = 0; i < 9; ++i) speeds.push_back(c == 1500.0 && i < 3 ? -999.0 : c);
+  file.variable("sound_speed", NC_FLOAT, {"depth", "lat", "lon"}, speeds, {},
+                {{"_FillValue", -999.0}});
+  std::vector<double> kinds, wind;
+  for (std::size_t j = 0; j < 9; ++j)
+    for (std::size_t i = 0; i < 9; ++i) {
+      kinds.push_back(i < 4 ? 3.0 : 5.0);
+      wind.push_back(7.0 + double(j));
+    }
+  file.variable("sediment", NC_BYTE, {"lat", "lon"}, kinds);
+  file.variable("wind_speed", NC_FLOAT, {"lat", "lon"}, wind, {{"units", "m s-1"}});
+}
+
+const std::string sonar = R"(
+[platform]
+position = [0.0, 0.0, 100.0]
+[transmitter]
+source_level_db = 220.0
+elevation_deg = 0.0
+beamwidth_deg = 20.0
+[pulse]
+kind = "cw"
+frequency = 4000.0
+duration = 0.1
+[array]
+kind = "horizontal"
+phones = 2
+spacing = 0.18
+[pings]
+recording_duration = 10.0
+)";
+
+const std::string place = R"(
+[environment.origin]
+latitude_deg = 40.0
+longitude_deg = -20.0
+[environment.bottom]
+kind = "fluid"
+[environment.area.bathymetry]
+file = "heights.nc"
+)";
+
+const std::string layered = "[environment.sound_speed]\nkind = \"isovelocity\"\nspeed = 1500.0\n";
+
+class AreaFiles : public testing::Test {
+ protected:
+  AreaFiles() {
+    write_heights(folder_ / "heights.nc");
+    write_others(folder_ / "others.nc");
+  }
+  Scenario read(const std::string& text) const {
+    return parse_scenario(text, folder_ / "place.toml");
+  }
+  std::string fault(const std::string& text) const {
+    try {
+      static_cast<void>(read(text));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+  TemporaryDirectory folder_;
+};
+
+// 60 places east and 60 north of the first: 1000 + 120 + 300 m; the slope in metres of the map.
+TEST_F(AreaFiles, HeightsAreDepthsAtTheirPlaces) {
+  const Scenario s = read(place + layered + sonar);
+  ASSERT_TRUE(s.area);
+  const double degree = MapFrame::earth_radius * radians(1.0);
+  const MapValue here = s.area->floor().at(0.0, 0.0);
+  EXPECT_NEAR(here.value, 1420.0, 1e-6);
+  EXPECT_NEAR(here.x, 2.0 / (0.005 * degree * std::cos(radians(40.0))), 1e-7);
+  EXPECT_NEAR(here.y, 5.0 / (0.005 * degree), 1e-7);
+  EXPECT_EQ(s.origin, (GeographicPlace{40.0, -20.0}));
+  EXPECT_NEAR(s.environment.bottom.depth_at(1000.0), s.area->bottom_depth(0.0, 1000.0), 0.05);
+  EXPECT_EQ(s.environment.water.at(10.0).c, 1500.0);
+}
+
+TEST_F(AreaFiles, WaterKindsAndWindHaveMapsOfTheirOwn) {
+  const Scenario s = read(place + R"(
+[environment.area.sound_speed]
+file = "others.nc"
+[environment.area.wind]
+file = "others.nc"
+[environment.area.seabed]
+file = "others.nc"
+variable = "sediment"
+[[environment.area.seabed.class]]
+number = 3
+name = "sand"
+kind = "fluid"
+speed = 1700.0
+[[environment.area.seabed.class]]
+number = 5
+kind = "rigid"
+)" + sonar);
+  EXPECT_NEAR(s.wind_speed, 11.0, 1e-6);
+  EXPECT_NEAR(s.area->speed_at(0.0, 0.0, 100.0).c, 1500.0, 1e-3);
+  // What is missing of the second level has its neighbours' speed; the third has none anywhere.
+  EXPECT_NEAR(s.area->speed_at(-80e3, 0.0, 100.0).c, 1500.0, 1e-3);
+  EXPECT_NEAR(s.area->speed_at(0.0, 0.0, 3000.0).c, 1500.0 + 0.0165 * 2900.0, 1e-2);
+  EXPECT_EQ(s.area->material_at(5000.0, 0.0), BoundaryMaterial(Rigid{}));
+  EXPECT_EQ(std::get<FluidHalfSpace>(s.area->material_at(-15000.0, 0.0)).speed, 1700.0);
+}
+
+TEST_F(AreaFiles, WhatIsWrittenIsReadAgain) {
+  const Scenario s = read(place + R"(
+[environment.area.sound_speed]
+file = "others.nc"
+[environment.area.seabed]
+file = "others.nc"
+[[environment.area.seabed.class]]
+number = 5
+kind = "rigid"
+[[environment.area.seabed.class]]
+number = 3
+kind = "fluid"
+speed = 1700.0
+)" + sonar);
+  const Scenario again = read(to_toml(s));
+  EXPECT_EQ(again.area->settings(), s.area->settings());
+  EXPECT_EQ(again.area->everywhere(), s.area->everywhere());
+  EXPECT_EQ(again.origin, s.origin);
+}
+
+TEST_F(AreaFiles, FaultsAreToldByTheirNames) {
+  EXPECT_THAT(fault(place + sonar), HasSubstr("environment.sound_speed"));
+  EXPECT_THAT(fault(place + layered + sonar + "[environment.bottom.shape]\nrange=[0]\ndepth=[1]\n"),
+              HasSubstr("environment.bottom.shape"));
+  EXPECT_THAT(
+      fault(layered + sonar +
+            "[environment.bottom]\nkind = \"rigid\"\n"
+            "[environment.area.bathymetry]\nfile = \"heights.nc\"\n"),
+      testing::AllOf(HasSubstr("[environment.origin]"), HasSubstr("heights.nc: elevation")));
+  EXPECT_THAT(fault(place + "variable = \"tide\"\n" + layered + sonar),
+              testing::AllOf(HasSubstr("heights.nc"), HasSubstr("no variable of bathymetry"),
+                             HasSubstr("tide")));
+  std::string elsewhere = place;
+  elsewhere.replace(elsewhere.find("40.0"), 4, "45.0");
+  EXPECT_THAT(fault(elsewhere + layered + sonar), HasSubstr("heights.nc: elevation"));
+  EXPECT_THAT(fault(place + R"(
+[environment.area.sound_speed]
+file = "others.nc"
+variable = "sediment"
+)" + sonar),
+              HasSubstr("a variable over depth and map"));
+  EXPECT_THAT(fault(place + layered + sonar +
+                    "[[target]]\nposition = [0.0, 90000.0, 50.0]\n"
+                    "strength_db = 10.0\n"),
+              testing::AllOf(HasSubstr("target"), HasSubstr("a place on the map")));
+}
+
+// 10⁸ places: opened in kilobytes.
+TEST_F(AreaFiles, ALargeGridIsOpenedAndNotLoaded) {
+  {
+    NetcdfWriter file(folder_ / "large.nc", NC_64BIT_OFFSET);  // 200 MB, of which none is written
+    constexpr std::size_t n = 10'000;
+    nc_set_fill(file.id(), NC_NOFILL, nullptr);
+    file.axis("lat", even(15.0, 0.005, n), {{"units", "degrees_north"}});
+    file.axis("lon", even(-45.0, 0.005, n), {{"units", "degrees_east"}});
+    file.variable("elevation", NC_SHORT, {"lat", "lon"}, {});
+  }
+  const OpenedMap map = open_map(folder_ / "large.nc", "", bathymetry_map, -20.0);
+  EXPECT_EQ(map.grid->x().size(), 10'000U);
+  EXPECT_EQ(map.grid->bytes(), 0U);
+  EXPECT_EQ(*map.grid->at(5000, 5000), 0.0F);
+  EXPECT_LE(map.grid->bytes(), 128U * 128U * 4U);
+}
+
+TEST(FillVolume, LevelsAreFilledFromTheirNeighbours) {
+  const float none = std::nanf("");
+  std::vector<float> values = {1500.0F, 1490.0F, none, 1510.0F, none, none, none, none, none};
+  fill_volume(3, 1, {0.0, 100.0, 200.0}, values);
+  EXPECT_FLOAT_EQ(values[4], 1490.0F);
+  EXPECT_FLOAT_EQ(values[6], 1510.0F);
+  EXPECT_FLOAT_EQ(values[8], 1490.0F + 1.65F);
+}
+
+}  // namespace
+}  // namespace asdic::detail
