@@ -32,6 +32,10 @@ struct Arrival {
   ArrivalKind kind = ArrivalKind::ray;
   double launch_elevation = 0.0;   ///< [rad]
   double arrival_elevation = 0.0;  ///< [rad]
+  /// By how much the way that sound travels is turned clockwise from the straight line on the map,
+  /// where it leaves and where it arrives; 0 where rays keep to a vertical plane [rad]
+  double launch_deflection = 0.0;
+  double arrival_deflection = 0.0;  ///< [rad]
   double delay = 0.0;              ///< τ [s]
   std::complex<double> amplitude =
       0.0;                 ///< spreading × reflections × absorption × caustic phase [1/m × 1 m]

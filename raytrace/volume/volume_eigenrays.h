@@ -1,0 +1,47 @@
+#pragma once
+#include <cstddef>
+#include <optional>
+
+#include "raytrace/ocean/arrivals.h"
+#include "raytrace/ocean/path_limits.h"
+#include "raytrace/volume/volume_ray.h"
+
+namespace asdic::detail {
+
+/// What a search did.
+struct VolumeSearchReport {
+  std::size_t rays = 0;        ///< traced for the mesh
+  std::size_t refined = 0;     ///< and to refine
+  std::size_t unfinished = 0;  ///< cells of the mesh that were left unresolved around the receiver
+};
+
+/// The longest path that a search follows in water where rays bend [m]: three times the way and
+/// ten times the depth more. In uniform water bounces alone end a ray.
+[[nodiscard]] double longest_path(const VolumeOcean& ocean, const Vec3& from, const Vec3& to);
+
+/// All eigenrays from one place to another through a volume, sorted by delay.
+///
+/// Launch directions are cut into cells of elevation and azimuth, the azimuths as far from the
+/// receiver's bearing as bounces off the steepest floor can turn a ray. Rays through the corners of
+/// a cell that met the same boundaries in the same order are one family; each passes the receiver
+/// at a miss that is a smooth function of the two angles. Where their 2 × 2 matrices agree, the
+/// cell holds one root or none; where they do not and the receiver is near, the cell is cut.
+/// Newton's method on both angles follows until the miss is below 10 µm.
+/// docs/theory/three-dimensional-rays.md
+/// \param limits  max_vertices, diffraction and the limits of delay mean nothing here
+[[nodiscard]] Arrivals volume_eigenrays(const VolumeTracer& tracer, const Vec3& from,
+                                        const Vec3& to, const PathLimits& limits,
+                                        VolumeSearchReport* report = nullptr);
+
+/// The same path after its ends have moved by metres. Null if no ray of the same history is found
+/// there: then it has to be searched for. \param bearing_change  by how much the line between the
+/// ends has turned since [rad] is taken care of: deflections count from that line
+[[nodiscard]] std::optional<Arrival> followed_volume_path(const VolumeTracer& tracer,
+                                                          const Arrival& path, const Vec3& from,
+                                                          const Vec3& to);
+
+/// The ray of a path, to be drawn: places in order. \param path  what a search gave
+[[nodiscard]] std::vector<Vec3> volume_track(const VolumeTracer& tracer, const Arrival& path,
+                                             const Vec3& from, const Vec3& to);
+
+}  // namespace asdic::detail

@@ -1,0 +1,689 @@
+#include "raytrace/volume/volume_ray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/geometry.h"
+
+namespace asdic::detail {
+namespace {
+
+using RayVector = Eigen::Matrix<double, 20, 1, Eigen::DontAlign>;  // x, p, X, P, length, nepers
+
+constexpr double touching_boundary = 1e-9;  // [m]
+constexpr int most_volume_steps = 200000;
+
+RayVector packed_state(const VolumeState& s) noexcept {
+  RayVector y;
+  y.segment<3>(0) = s.x;
+  y.segment<3>(3) = s.p;
+  for (int k = 0; k < 2; ++k) {
+    y.segment<3>(6 + 3 * k) = s.x_launch.col(k);
+    y.segment<3>(12 + 3 * k) = s.p_launch.col(k);
+  }
+  y[18] = s.length;
+  y[19] = s.nepers;
+  return y;
+}
+
+VolumeState unpacked_state(const RayVector& y, double time) noexcept {
+  VolumeState s;
+  s.x = y.segment<3>(0);
+  s.p = y.segment<3>(3);
+  for (int k = 0; k < 2; ++k) {
+    s.x_launch.col(k) = y.segment<3>(6 + 3 * k);
+    s.p_launch.col(k) = y.segment<3>(12 + 3 * k);
+  }
+  s.length = y[18];
+  s.nepers = y[19];
+  s.time = time;
+  return s;
+}
+
+/// det(a, b, c), of the left-handed triple.
+double triple_product(const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
+  return a.x() * (b.y() * c.z() - b.z() * c.y()) + a.y() * (b.z() * c.x() - b.x() * c.z()) +
+         a.z() * (b.x() * c.y() - b.y() * c.x());
+}
+
+/// How many zeros det(X + w·P, t) has in 0 < w ≤ end. In uniform water the tube's matrix is this
+/// pencil, w = ∫c² dτ, and its roots are real, since wavefronts' curvatures are.
+int tube_folds(const Mat32& x, const Mat32& p, const Vec3& t, double end) noexcept {
+  const Vec3 x1 = x.col(0), x2 = x.col(1), p1 = p.col(0), p2 = p.col(1);
+  const double a = triple_product(p1, p2, t);
+  const double b = triple_product(x1, p2, t) + triple_product(p1, x2, t);
+  const double e = triple_product(x1, x2, t);
+  const auto inside = [&](double w) { return w > 1e-12 * end && w <= end; };
+  if (std::abs(a) * end <= 1e-14 * std::abs(b)) return b != 0.0 && inside(-e / b) ? 1 : 0;
+  const double root = std::sqrt(std::max(0.0, b * b - 4.0 * a * e));
+  const double q = -0.5 * (b + std::copysign(root, b));
+  const double first = q / a, second = q != 0.0 ? e / q : 0.0;
+  return (inside(first) ? 1 : 0) + (inside(second) ? 1 : 0);
+}
+
+/// A cubic between two ends of a step, u = 0 … 1.
+struct StepChord {
+  Vec3 a, va, b, vb;  // places, and h·velocities
+  [[nodiscard]] Vec3 at(double u) const noexcept {
+    const double w = 1.0 - u;
+    return w * w * (1.0 + 2.0 * u) * a + u * w * w * va + u * u * (3.0 - 2.0 * u) * b -
+           u * u * w * vb;
+  }
+  [[nodiscard]] Vec3 slope(double u) const noexcept {
+    const double w = 1.0 - u;
+    return 6.0 * u * w * (b - a) + w * (1.0 - 3.0 * u) * va + u * (3.0 * u - 2.0) * vb;
+  }
+};
+
+/// The first u in (from, to] where a room, positive before, is used up. \param room  gives {room,
+/// its derivative over u} at u. A dip between both ends is looked for.
+template <class Room>
+std::optional<double> room_used_up(const Room& room, double from, double to) {
+  struct Value {
+    double room, slope;
+  };
+  const auto value = [&](double u) {
+    const auto [r, s] = room(u);
+    return Value{r, s};
+  };
+  double low = from, high = to;
+  const Value at_high = value(high);
+  if (at_high.room > 0.0) {
+    const Value at_low = value(low);
+    if (!(at_low.slope < 0.0 && at_high.slope > 0.0)) return {};
+    double left = low, right = high;  // least room between
+    Value middle = at_low;
+    for (int i = 0; i < 60 && right - left > 1e-9 * (to - from); ++i) {
+      const double u = 0.5 * (left + right);
+      middle = value(u);
+      if (middle.room <= 0.0) {
+        high = u;
+        break;
+      }
+      (middle.slope < 0.0 ? left : right) = u;
+    }
+    if (middle.room > 0.0) return {};
+  }
+  double u = high;
+  Value at = value(u);
+  for (int i = 0; i < 80; ++i) {
+    double next = at.slope < 0.0 ? u - at.room / at.slope : 0.5 * (low + high);
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    if (std::abs(next - u) <= 1e-15 * std::max(1.0, std::abs(u)) || high - low < 1e-15) break;
+    u = next;
+    at = value(u);
+    (at.room > 0.0 ? low : high) = u;
+  }
+  return u;
+}
+
+}  // namespace
+
+Mat32 launch_basis(const Vec3& d) noexcept {
+  const double level = std::hypot(d.x(), d.y());
+  Mat32 basis;
+  if (level < 1e-12) {
+    basis.col(0) = Vec3(0.0, d.z() > 0.0 ? 1.0 : -1.0, 0.0);
+    basis.col(1) = Vec3(1.0, 0.0, 0.0);
+    return basis;
+  }
+  basis.col(0) = Vec3(d.z() * d.x() / level, d.z() * d.y() / level, -level);  // up
+  basis.col(1) = Vec3(d.y() / level, -d.x() / level, 0.0);                    // clockwise
+  return basis;
+}
+
+double tube_area(const VolumeState& state) noexcept {
+  return triple_product(state.x_launch.col(0), state.x_launch.col(1), state.p.normalized());
+}
+
+VolumeTracer::VolumeTracer(const VolumeOcean& ocean, double frequency)
+    : ocean_(ocean),
+      frequency_(frequency),
+      attenuation_(ocean.attenuation(frequency)),
+      steepest_(ocean.steepest_floor()),
+      spacing_(ocean.floor_spacing()),
+      shallowest_(ocean.shallowest_floor()),
+      bending_(ocean.sideways_bending()) {}
+
+/// One ray on its way.
+class VolumeTracer::Run {
+ public:
+  Run(const VolumeTracer& tracer, const Vec3& receiver, const VolumeLimits& limits, VolumeRay& out,
+      bool with_track)
+      : tracer_(tracer),
+        ocean_(tracer.ocean_),
+        receiver_(receiver),
+        limits_(limits),
+        out_(out),
+        with_track_(with_track) {}
+
+  void follow(const Vec3& from, const Vec3& direction) {
+    out_.legs.clear();
+    out_.bounces.clear();
+    out_.track.clear();
+    source_ = from;
+    cell_ = ocean_.water_cell(from, direction);
+    const double c = ocean_.speed(from, cell_.index).c;
+    out_.source_speed = c;
+    s_.x = from;
+    s_.p = direction / c;
+    s_.p_launch = launch_basis(direction) / c;
+    if (with_track_) out_.track.push_back(from);
+    begin_leg();
+    for (int i = 0; i < most_volume_steps; ++i) {
+      const bool on = cell_.uniform ? straight() : bent();
+      if (!on) break;
+      if (s_.length >= limits_.longest || cannot_return()) {
+        end_leg();
+        break;
+      }
+    }
+  }
+
+ private:
+  enum class Event { none, surface, floor, wall };
+  struct Met {
+    Event event = Event::none;
+    double at = infinity;  // share of the step
+    Vec3 normal = Vec3::Zero();
+  };
+
+  // ── legs and the receiver ────────────────────────────────────────────────────────────────────
+
+  void begin_leg() {
+    const double level = std::hypot(s_.p.x(), s_.p.y());
+    steep_ = cell_.uniform || std::abs(s_.p.z()) > 1.2 * level ? 1.0 : 0.0;
+    leg_begin_ = s_;
+    passed_ = false;
+    nearest_ = infinity;
+  }
+
+  /// Rate at which the receiver comes closer: zero where it is closest. Of level rays the distance
+  /// on the map counts, which has one minimum however often they turn.
+  [[nodiscard]] double closing(const Vec3& x, const Vec3& v) const noexcept {
+    const Vec3 d = receiver_ - x;
+    return d.x() * v.x() + d.y() * v.y() + steep_ * d.z() * v.z();
+  }
+
+  void add_pass(const VolumeState& state, double c, int caustics, double beyond) {
+    const Vec3 d = receiver_ - state.x;
+    const double distance =
+        d.x() * d.x() + d.y() * d.y() + steep_ * d.z() * d.z() + beyond * beyond;
+    if (distance >= nearest_) return;
+    nearest_ = distance;
+    passed_ = true;
+    pass_.state = state;
+    pass_.history = history_;
+    pass_.history.caustics = caustics;
+    pass_.c = c;
+    pass_.beyond = beyond;
+    pass_.bounces = out_.bounces.size();
+  }
+
+  /// Straight on from a state by so much of w = ∫c² dτ.
+  [[nodiscard]] static VolumeState drawn_out(const VolumeState& from, double w, double c) {
+    VolumeState s = from;
+    s.x += w * from.p;
+    s.x_launch += w * from.p_launch;
+    s.time += w / (c * c);
+    s.length += w / c;
+    return s;
+  }
+
+  /// The leg is whole: where it never came closest it is drawn out beyond its ends.
+  void end_leg() {
+    if (!passed_) {
+      const bool behind = closing(leg_begin_.x, leg_begin_.p) < 0.0;
+      const VolumeState& end = behind ? leg_begin_ : s_;
+      const double c = 1.0 / end.p.norm();
+      const Vec3 weighted(end.p.x(), end.p.y(), steep_ * end.p.z());
+      const double square = weighted.dot(end.p);
+      const double w = square > 0.0 ? closing(end.x, end.p) / square : 0.0;
+      if (std::isfinite(w)) add_pass(drawn_out(end, w, c), c, history_.caustics, std::abs(w) / c);
+    }
+    if (passed_) out_.legs.push_back(pass_);
+  }
+
+  /// Whether a ray that goes away from the receiver cannot be turned round any more: a bounce off
+  /// a floor of slope m changes the horizontal slowness by 2m/c at most.
+  [[nodiscard]] bool cannot_return() const noexcept {
+    const Vec2 away(s_.x.x() - receiver_.x(), s_.x.y() - receiver_.y());
+    const double distance = away.norm();
+    if (distance == 0.0) return false;
+    const double outward = (s_.p.x() * away.x() + s_.p.y() * away.y()) / distance;
+    const double left =
+        tracer_.bending_ > 0.0 ? tracer_.bending_ * (limits_.longest - s_.length) : 0.0;
+    const int bounces = limits_.max_bottom_bounces - history_.bottom_bounces;
+    const double turned = 2.1 * tracer_.steepest_ * double(bounces) * s_.p.norm() + left;
+    return (passed_ || steep_ == 0.0) && outward > turned + 1e-15;
+  }
+
+  // ── steps ────────────────────────────────────────────────────────────────────────────────────
+
+  /// In uniform water: straight to whatever comes next. \return false: the ray ended
+  bool straight() {
+    const VolumeState from = s_;
+    const double c = 1.0 / from.p.norm();
+    const Vec3 v = from.p;  // per w
+    double end = infinity;  // w of the next event
+    Met met;
+    const auto sooner = [&](double w, Event event, const Vec3& normal) {
+      if (w >= end) return;
+      end = w;
+      met = {event, 1.0, normal};
+    };
+    if (v.z() < 0.0)
+      sooner(std::max(0.0, (ocean_.surface_depth() - from.x.z()) / v.z()), Event::surface,
+             Vec3::UnitZ());
+    for (std::size_t i = 0; i < cell_.walls; ++i) {
+      const WaterSlab& slab = cell_.slabs[i];
+      const double rate = slab.normal.dot(v), at = slab.normal.dot(from.x);
+      if (rate > 0.0 && slab.high < infinity)
+        sooner(std::max(0.0, (slab.high - at) / rate), Event::wall, slab.normal);
+      if (rate < 0.0 && slab.low > -infinity)
+        sooner(std::max(0.0, (slab.low - at) / rate), Event::wall, slab.normal);
+    }
+    const double furthest = (limits_.longest - from.length) * c;
+    if (const auto w = floor_ahead(from, v, std::min(end, furthest)))
+      sooner(*w, Event::floor, Vec3::Zero());
+    if (end > furthest) {
+      end = furthest;
+      met = {};
+    }
+    note_closest_straight(from, v, c, end);
+    if (std::isinf(end)) {
+      end_leg();
+      return false;
+    }
+    s_ = drawn_out(from, end, c);
+    s_.nepers = from.nepers + absorbed(from.x.z(), s_.x.z(), end / c);
+    history_.caustics += tube_folds(from.x_launch, from.p_launch, v * c, end);
+    return at_event(met);
+  }
+
+  /// w of the first meeting with the floor up to `most`.
+  [[nodiscard]] std::optional<double> floor_ahead(const VolumeState& from, const Vec3& v,
+                                                  double most) const {
+    const auto room = [&](double w) {
+      const Vec3 x = from.x + w * v;
+      const VolumeFloor floor = ocean_.floor(x.x(), x.y());
+      return std::pair(floor.depth - x.z(),
+                       floor.gradient.x() * v.x() + floor.gradient.y() * v.y() - v.z());
+    };
+    if (std::isinf(tracer_.spacing_)) {
+      const auto [here, slope] = room(0.0);
+      if (slope >= 0.0) return {};
+      const double w = std::max(0.0, -here / slope);
+      if (w > most) return {};
+      return w;
+    }
+    const double level = std::hypot(v.x(), v.y());
+    double w = 0.0;
+    if (from.x.z() < tracer_.shallowest_) {  // none before it is as deep as any floor
+      if (v.z() <= 0.0) return {};
+      w = (tracer_.shallowest_ - from.x.z()) / v.z();
+    }
+    const double deepest = ocean_.deepest_floor();
+    double last = most;
+    if (v.z() > 0.0 && deepest < infinity)
+      last = std::min(last, (deepest + 1.0 - from.x.z()) / v.z());
+    if (v.z() < 0.0 && tracer_.shallowest_ > -infinity)
+      last = std::min(last, (tracer_.shallowest_ - from.x.z()) / v.z());
+    if (std::isinf(last)) last = w + 1e3 * tracer_.spacing_ / std::max(level, 1e-9 * v.norm());
+    const double step = level > 0.0 ? std::min(0.5 * tracer_.spacing_ / level, last - w) : last - w;
+    if (!(step > 0.0)) return {};
+    while (w < last) {
+      const double next = std::min(w + step, last);
+      if (const auto at = room_used_up(room, w, next)) return at;
+      w = next;
+    }
+    return {};
+  }
+
+  void note_closest_straight(const VolumeState& from, const Vec3& v, double c, double end) {
+    const Vec3 weighted(v.x(), v.y(), steep_ * v.z());
+    const double square = weighted.dot(v);
+    const double w = square > 0.0 ? closing(from.x, v) / square : 0.0;
+    if (!(w >= 0.0 && w <= end)) return;
+    VolumeState here = drawn_out(from, w, c);
+    here.nepers = from.nepers + absorbed(from.x.z(), here.x.z(), w / c);
+    add_pass(here, c, history_.caustics + tube_folds(from.x_launch, from.p_launch, v * c, w), 0.0);
+  }
+
+  /// ∫ attenuation ds along a straight line between two depths.
+  [[nodiscard]] double absorbed(double from, double to, double length) const {
+    const DepthFunction& loss = tracer_.attenuation_;
+    if (loss.is_constant()) return loss.at(0.0) * length;
+    if (std::abs(to - from) < 1e-6) return loss.at(0.5 * (from + to)) * length;
+    // straight pieces between the samples: trapezes are exact
+    const double top = std::min(from, to), bottom = std::max(from, to);
+    double sum = 0.0, z = top;
+    for (const double sample : loss.depths()) {
+      if (sample <= z) continue;
+      const double next = std::min(sample, bottom);
+      sum += 0.5 * (loss.at(z) + loss.just_above(next)) * (next - z);
+      z = next;
+      if (z >= bottom) break;
+    }
+    sum += loss.at(z) * (bottom - z);
+    return sum / (bottom - top) * length;
+  }
+
+  [[nodiscard]] RayVector rate(const RayVector& y) const {
+    const Vec3 x = y.segment<3>(0), p = y.segment<3>(3);
+    const VolumeSpeed water = ocean_.speed(x, cell_.index);
+    const double c = water.c, c2 = c * c;
+    RayVector d;
+    d.segment<3>(0) = c2 * p;
+    d.segment<3>(3) = -water.gradient / c;
+    for (int k = 0; k < 2; ++k) {
+      const Vec3 dx = y.segment<3>(6 + 3 * k), dp = y.segment<3>(12 + 3 * k);
+      const double dc = water.gradient.dot(dx);
+      d.segment<3>(6 + 3 * k) = 2.0 * c * dc * p + c2 * dp;
+      d.segment<3>(12 + 3 * k) = -(water.hessian * dx) / c + water.gradient * (dc / c2);
+    }
+    d[18] = c;
+    d[19] = tracer_.attenuation_.at(x.z()) * c;
+    return d;
+  }
+
+  /// One step of Dormand & Prince, J. Comp. Appl. Math. 6, 19 (1980). \param error  of the place,
+  /// in tolerances
+  [[nodiscard]] RayVector stepped(const RayVector& y, const RayVector& k1, double h, double* error,
+                                  RayVector* last) const {
+    const RayVector k2 = rate(y + h * (1.0 / 5.0) * k1);
+    const RayVector k3 = rate(y + h * (3.0 / 40.0 * k1 + 9.0 / 40.0 * k2));
+    const RayVector k4 = rate(y + h * (44.0 / 45.0 * k1 - 56.0 / 15.0 * k2 + 32.0 / 9.0 * k3));
+    const RayVector k5 = rate(y + h * (19372.0 / 6561.0 * k1 - 25360.0 / 2187.0 * k2 +
+                                       64448.0 / 6561.0 * k3 - 212.0 / 729.0 * k4));
+    const RayVector k6 =
+        rate(y + h * (9017.0 / 3168.0 * k1 - 355.0 / 33.0 * k2 + 46732.0 / 5247.0 * k3 +
+                      49.0 / 176.0 * k4 - 5103.0 / 18656.0 * k5));
+    const RayVector end = y + h * (35.0 / 384.0 * k1 + 500.0 / 1113.0 * k3 + 125.0 / 192.0 * k4 -
+                                   2187.0 / 6784.0 * k5 + 11.0 / 84.0 * k6);
+    if (error == nullptr) return end;
+    *last = rate(end);
+    const RayVector e = h * (71.0 / 57600.0 * k1 - 71.0 / 16695.0 * k3 + 71.0 / 1920.0 * k4 -
+                             17253.0 / 339200.0 * k5 + 22.0 / 525.0 * k6 - 1.0 / 40.0 * *last);
+    const double tube = std::max(1.0, y.segment<6>(6).norm());
+    *error = std::max(e.segment<3>(0).norm() / limits_.tolerance,
+                      e.segment<6>(6).norm() / (tube * std::max(1e-9, 1e-3 * limits_.tolerance)));
+    return end;
+  }
+
+  /// Where speed varies: one step, or the part of it up to the first event. \return false: ended
+  bool bent() {
+    const RayVector y = packed_state(s_);
+    const RayVector k1 = rate(y);
+    const double c = 1.0 / s_.p.norm();
+    if (step_ <= 0.0) step_ = 50.0 / c;
+    double h = std::min(step_, (limits_.longest - s_.length) / c * 1.0001 + 1e-9);
+    RayVector end, k7;
+    for (int i = 0; i < 60; ++i) {
+      double error = 0.0;
+      end = stepped(y, k1, h, &error, &k7);
+      const double factor = error > 0.0 ? 0.9 * std::pow(error, -0.2) : 5.0;
+      if (error <= 1.0) {
+        step_ = h * std::clamp(factor, 0.3, 5.0);
+        break;
+      }
+      h *= std::clamp(factor, 0.1, 0.9);
+    }
+    const StepChord chord{y.segment<3>(0), h * k1.segment<3>(0), end.segment<3>(0),
+                          h * k7.segment<3>(0)};
+    const Met met = first_met(chord);
+    double part = 1.0;
+    RayVector now = end;
+    if (met.event != Event::none) {
+      part = met.at;
+      now = stepped(y, k1, part * h, nullptr, nullptr);
+      for (int i = 0; i < 3; ++i) {  // onto the boundary itself
+        const auto [room, slope] = room_of(met, now.segment<3>(0), rate(now).segment<3>(0));
+        if (slope == 0.0 || std::abs(room) < touching_boundary) break;
+        part = std::clamp(part - room / slope / h, 0.0, 1.0);
+        now = stepped(y, k1, part * h, nullptr, nullptr);
+      }
+    }
+    note_closest_bent(y, k1, chord, h, part);
+    const VolumeState before = s_;
+    s_ = unpacked_state(now, before.time + part * h);
+    count_turns(before);
+    history_.caustics += folds_on_step(before, s_, c);
+    s_.p *= 1.0 / (s_.p.norm() * ocean_.speed(s_.x, cell_.index).c);
+    if (with_track_) out_.track.push_back(s_.x);
+    return at_event(met);
+  }
+
+  [[nodiscard]] std::pair<double, double> room_of(const Met& met, const Vec3& x,
+                                                  const Vec3& v) const {
+    switch (met.event) {
+      case Event::surface:
+        return {x.z() - ocean_.surface_depth(), v.z()};
+      case Event::floor: {
+        const VolumeFloor floor = ocean_.floor(x.x(), x.y());
+        return {floor.depth - x.z(),
+                floor.gradient.x() * v.x() + floor.gradient.y() * v.y() - v.z()};
+      }
+      case Event::wall: {
+        const double at = met.normal.dot(x), rate = met.normal.dot(v);
+        return {wall_ - at, -rate};
+      }
+      case Event::none:
+        break;
+    }
+    return {0.0, 0.0};
+  }
+
+  Met first_met(const StepChord& chord) {
+    Met first;
+    const auto take = [&](std::optional<double> u, Event event, const Vec3& normal) {
+      if (u && *u < first.at) {
+        first = {event, *u, normal};
+        return true;
+      }
+      return false;
+    };
+    const auto plane = [&](const Vec3& normal, double offset, double sign) {
+      return [&chord, normal, offset, sign](double u) {
+        return std::pair(sign * (normal.dot(chord.at(u)) - offset),
+                         sign * normal.dot(chord.slope(u)));
+      };
+    };
+    take(room_used_up(plane(Vec3::UnitZ(), ocean_.surface_depth(), 1.0), 0.0, 1.0), Event::surface,
+         Vec3::UnitZ());
+    for (std::size_t i = 0; i < cell_.walls; ++i) {
+      const WaterSlab& slab = cell_.slabs[i];
+      if (slab.low > -infinity &&
+          take(room_used_up(plane(slab.normal, slab.low, 1.0), 0.0, 1.0), Event::wall, slab.normal))
+        wall_ = slab.low;
+      if (slab.high < infinity && take(room_used_up(plane(slab.normal, slab.high, -1.0), 0.0, 1.0),
+                                       Event::wall, slab.normal))
+        wall_ = slab.high;
+    }
+    const double bulge = 0.25 * (chord.vb - chord.va).norm();  // off the straight line, at most
+    if (std::max(chord.a.z(), chord.b.z()) + bulge < tracer_.shallowest_) return first;
+    const auto room = [&](double u) {
+      const Vec3 x = chord.at(u), v = chord.slope(u);
+      const VolumeFloor floor = ocean_.floor(x.x(), x.y());
+      return std::pair(floor.depth - x.z(),
+                       floor.gradient.x() * v.x() + floor.gradient.y() * v.y() - v.z());
+    };
+    const double level = std::hypot(chord.b.x() - chord.a.x(), chord.b.y() - chord.a.y());
+    const int parts = std::isinf(tracer_.spacing_)
+                          ? 1
+                          : std::clamp(int(std::ceil(2.0 * level / tracer_.spacing_)), 1, 10000);
+    for (int i = 0; i < parts; ++i)
+      if (take(room_used_up(room, double(i) / parts, double(i + 1) / parts), Event::floor,
+               Vec3::Zero()))
+        break;
+    return first;
+  }
+
+  void note_closest_bent(const RayVector& y, const RayVector& k1, const StepChord& chord, double h,
+                         double part) {
+    const double begin = closing(chord.a, chord.va);
+    const double end = closing(chord.at(part), chord.slope(part));
+    if (!(begin >= 0.0 && end <= 0.0) || begin == end) return;
+    double low = 0.0, high = part;
+    for (int i = 0; i < 50 && high - low > 1e-6; ++i) {
+      const double u = 0.5 * (low + high);
+      (closing(chord.at(u), chord.slope(u)) > 0.0 ? low : high) = u;
+    }
+    double u = 0.5 * (low + high);
+    RayVector at = stepped(y, k1, u * h, nullptr, nullptr);
+    VolumeState here = unpacked_state(at, s_.time + u * h);
+    const double c = ocean_.speed(here.x, cell_.index).c;
+    const VolumeState before = s_;
+    add_pass(here, c, history_.caustics + folds_on_step(before, here, 1.0 / before.p.norm()), 0.0);
+    if (passed_ && pass_.state.time == here.time) {
+      pass_.history.upper_turns += before.p.z() < 0.0 && here.p.z() > 0.0 ? 1 : 0;
+      pass_.history.lower_turns += before.p.z() > 0.0 && here.p.z() < 0.0 ? 1 : 0;
+    }
+  }
+
+  void count_turns(const VolumeState& before) {
+    if (before.p.z() < 0.0 && s_.p.z() > 0.0) ++history_.upper_turns;
+    if (before.p.z() > 0.0 && s_.p.z() < 0.0) ++history_.lower_turns;
+  }
+
+  /// Caustics on a short step: one where the tube's area changes sign, two where both curvatures
+  /// pass through theirs.
+  [[nodiscard]] static int folds_on_step(const VolumeState& a, const VolumeState& b, double c) {
+    const double before = tube_area(a), after = tube_area(b);
+    if (before == 0.0 || after == 0.0) return 0;
+    if ((before < 0.0) != (after < 0.0)) return 1;
+    return tube_folds(a.x_launch, a.p_launch, a.p * c, c * c * (b.time - a.time)) == 2 ? 2 : 0;
+  }
+
+  // ── events ───────────────────────────────────────────────────────────────────────────────────
+
+  bool at_event(const Met& met) {
+    switch (met.event) {
+      case Event::none:
+        return true;
+      case Event::wall:
+        cross(met.normal);
+        return true;
+      case Event::surface:
+        return reflect(BoundaryKind::surface);
+      case Event::floor:
+        return reflect(BoundaryKind::bottom);
+    }
+    return true;
+  }
+
+  /// Into the next cell: the gradient jumps where neighbours cross a moment sooner or later,
+  /// P grows by (ṗ₊ − ṗ₋)(n·X)/(n·ẋ).
+  void cross(const Vec3& normal) {
+    const VolumeSpeed before = ocean_.speed(s_.x, cell_.index);
+    cell_ = ocean_.water_cell(s_.x, s_.p);
+    const VolumeSpeed after = ocean_.speed(s_.x, cell_.index);
+    const double rate = before.c * before.c * normal.dot(s_.p);
+    if (std::abs(rate) < 1e-9 * before.c) return;
+    const Vec3 jump = (before.gradient - after.gradient) / before.c;
+    for (int k = 0; k < 2; ++k)
+      s_.p_launch.col(k) += jump * (normal.dot(s_.x_launch.col(k)) / rate);
+  }
+
+  /// A mirror of slope and curvature, in water with a gradient. Neighbours meet it a moment sooner
+  /// or later, elsewhere, where the normal is another. docs/theory/three-dimensional-rays.md
+  bool reflect(BoundaryKind kind) {
+    const bool surface = kind == BoundaryKind::surface;
+    end_leg();
+    int& bounces = surface ? history_.surface_bounces : history_.bottom_bounces;
+    if (bounces >= (surface ? limits_.max_surface_bounces : limits_.max_bottom_bounces) ||
+        out_.bounces.size() >= limits_.most_bounces)
+      return false;
+    Vec3 n = Vec3::UnitZ();    // into the water
+    Mat3 bend = Mat3::Zero();  // ∇n along the boundary
+    if (!surface) {
+      const VolumeFloor floor = ocean_.floor(s_.x.x(), s_.x.y());
+      const Vec3 f(floor.gradient.x(), floor.gradient.y(), -1.0);
+      const double size = f.norm();
+      n = f / size;
+      bend.topLeftCorner<2, 2>() = floor.hessian / size;
+      bend -= n * (n.transpose() * bend);
+    }
+    const VolumeSpeed water = ocean_.speed(s_.x, cell_.index);
+    const double c = water.c, c2 = c * c;
+    const Vec3 p = s_.p;
+    const double across = p.dot(n);
+    if (!(across < 0.0)) return false;  // along the boundary: neither in nor out
+    const Vec3 out = p - 2.0 * across * n;
+    const Vec3 force = -water.gradient / c;
+    for (int k = 0; k < 2; ++k) {
+      const Vec3 x = s_.x_launch.col(k);
+      const double later = -n.dot(x) / (c2 * across);
+      const Vec3 where = x + c2 * p * later;  // along the boundary
+      const Vec3 turned = bend * where;       // of the normal
+      Vec3 dp = s_.p_launch.col(k) + force * later;
+      // |p| = 1/c at the place of the meeting: kept by the mirror
+      dp -= 2.0 * ((dp.dot(n) + p.dot(turned)) * n + across * turned);
+      s_.x_launch.col(k) = where - c2 * out * later;
+      s_.p_launch.col(k) = dp - force * later;
+    }
+    s_.p = out;
+    ++bounces;
+    const double grazing = std::asin(std::clamp(-across * c, 0.0, 1.0));
+    out_.bounces.push_back({.boundary = kind,
+                            .grazing = grazing,
+                            .range = std::hypot(s_.x.x() - source_.x(), s_.x.y() - source_.y())});
+    if (with_track_ && cell_.uniform) out_.track.push_back(s_.x);
+    history_.key = bounced_key(history_.key, kind);
+    cell_ = ocean_.water_cell(s_.x, s_.p);
+    if (limits_.losses && !lose(kind, grazing, c)) return false;
+    begin_leg();
+    return true;
+  }
+
+  /// What the boundary takes, as a marched ray in a plane. \return false: too little is left
+  bool lose(BoundaryKind kind, double grazing, double c) {
+    const bool surface = kind == BoundaryKind::surface;
+    const BoundaryMaterial& material =
+        surface ? ocean_.surface_material() : ocean_.floor_material(s_.x.x(), s_.x.y());
+    const WaterAtBoundary beside{
+        .speed = c, .density = ocean_.water_density(s_.x.z()), .frequency = tracer_.frequency_};
+    std::complex<double> coefficient = reflection_coefficient(material, grazing, beside);
+    const Roughness& rough = surface ? ocean_.surface_roughness() : ocean_.floor_roughness();
+    double scattered = 0.0;
+    if (!rough.smooth() || history_.scattered > 0.0) {
+      const RoughReflection left =
+          rough_reflection(rough, std::sin(grazing), 2.0 * pi * tracer_.frequency_ / c);
+      const double mean = left.coherent * left.coherent;
+      scattered = std::norm(coefficient) *
+                  (history_.scattered * left.energy +
+                   std::norm(history_.reflection) * std::max(0.0, left.energy - mean));
+      coefficient *= left.coherent;
+    }
+    history_.reflection *= coefficient;
+    history_.scattered = scattered;
+    const double left = std::sqrt(std::norm(history_.reflection) + scattered);
+    return left > 0.0 && left >= limits_.faintest;
+  }
+
+  const VolumeTracer& tracer_;
+  const VolumeOcean& ocean_;
+  const Vec3 receiver_;
+  const VolumeLimits& limits_;
+  VolumeRay& out_;
+  bool with_track_;
+
+  Vec3 source_ = Vec3::Zero();
+  VolumeState s_, leg_begin_;
+  VolumeHistory history_;
+  WaterCell cell_;
+  LegPass pass_;
+  bool passed_ = false;
+  double nearest_ = infinity;
+  double steep_ = 0.0;  // weight of the depth in what is closest
+  double wall_ = 0.0;   // the plane that the last chord met
+  double step_ = 0.0;   // of travel time, as the last one suggests [s]
+};
+
+void VolumeTracer::trace(const Vec3& from, const Vec3& direction, const Vec3& receiver,
+                         const VolumeLimits& limits, VolumeRay& out, bool with_track) const {
+  Run(*this, receiver, limits, out, with_track).follow(from, direction);
+}
+
+}  // namespace asdic::detail
