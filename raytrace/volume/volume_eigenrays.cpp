@@ -15,20 +15,22 @@ namespace volume {  // with names that others use, too
 namespace {
 
 constexpr double near_enough = 1e-5;       // miss at the receiver [m]
+constexpr double acceptable = 1e-3;        // the same where rounding and steps leave more: 1e-12 s
 constexpr double on_the_leg = 1e-4;        // beyond the ends of a leg [m]
 constexpr double coarse = 1e-3;            // of a step of the mesh's rays [m]
 constexpr double fine = 1e-7;              // of a step of an eigenray [m]
 constexpr double uniform_mesh = 6.0;       // of launch angles, where rays are straight [deg]
 constexpr double bent_mesh = 1.5;          // and elsewhere
 constexpr int cuts = 7;                    // a cell is cut in halves so often, each way
-constexpr int cuts_of_borders = 3;         // the same where families end
+constexpr int cuts_of_borders = 3;         // the same where families part, in uniform water
+constexpr int cuts_of_bent_borders = 1;    // and elsewhere
 constexpr std::size_t most_rays = 100000;  // of a mesh
 
 double wrapped(double angle) noexcept { return std::remainder(angle, 2.0 * pi); }
 
 /// How a ray's leg passes the receiver.
 struct Pass {
-  std::uint64_t key = 0;
+  std::uint64_t key = 0, facets = 0;
   Vec3 miss;     // place − receiver
   Vec3 tangent;  // unit
   Mat32 x_launch;
@@ -107,9 +109,9 @@ class Refinement {
           break;
         }
       }
-      if (!better) return {};
+      if (!better) break;
     }
-    if (!(miss < near_enough)) return {};
+    if (!(miss < acceptable)) return {};
     if (!trace(direction, leg, key, fine, true, traced)) return {};
     const LegPass& pass = ray_.legs[leg];
     if (pass.beyond > on_the_leg) return {};
@@ -196,14 +198,17 @@ class Mesh {
     const VolumeOcean& ocean = tracer.ocean();
     const WaterCell cell = ocean.water_cell(from, Vec3::UnitZ());
     const double c = ocean.speed(from, cell.index).c;
-    turn_ = 2.1 * ocean.steepest_floor() * double(limits.max_bottom_bounces);
-    if (ocean.sideways_bending() > 0.0) turn_ += ocean.sideways_bending() * longest_ * c;
-    const double mesh = radians(cell.uniform && cell.walls == 0 ? uniform_mesh : bent_mesh);
+    slope_ = ocean.steepest_floor();
+    if (ocean.sideways_bending() > 0.0) by_water_ = ocean.sideways_bending() * longest_ * c;
+    const bool uniform = cell.uniform && cell.walls == 0;
+    const double mesh = radians(uniform ? uniform_mesh : bent_mesh);
+    border_cuts_ = uniform ? cuts_of_borders : cuts_of_bent_borders;
+    slowing_ = uniform ? 1.0 : 0.94;
     const double most = std::min(limits.max_launch_angle, 0.5 * pi);
     rows_ = std::max(2, int(std::ceil(2.0 * most / mesh)));
     if (rows_ % 2 != 0) ++rows_;
     d_elevation_ = 2.0 * most / rows_;
-    const double level = std::asin(std::min(1.0, turn_));
+    const double level = std::asin(std::min(1.0, turn(0.0)));
     d_azimuth_ = std::clamp(0.5 * level, 2e-3, radians(uniform_mesh));
     // a whole number to the half turn, so that no cell is beyond it
     columns_ = int(std::ceil(pi / d_azimuth_));
@@ -214,8 +219,9 @@ class Mesh {
     for (int row = 0; row < rows_; ++row) {
       const double low = std::abs(elevation(row << cuts)),
                    high = std::abs(elevation((row + 1) << cuts));
-      const double cosine = std::cos(std::max(low, high));
-      const double reach = turn_ >= cosine ? pi : std::asin(turn_ / cosine);
+      const double steepest = std::max(low, high), cosine = std::cos(steepest);
+      const double most = turn(steepest);
+      const double reach = most >= cosine ? pi : std::asin(most / cosine);
       const int columns = std::min(columns_, int(std::ceil(reach / d_azimuth_ + 1e-9)) + 0);
       for (int column = -std::max(columns, 1); column < std::max(columns, 1); ++column)
         look({row << cuts, column << cuts, 0, 0});
@@ -235,6 +241,18 @@ class Mesh {
   }
 
  private:
+  /// By how much bounces off slopes and bent water change the horizontal slowness of a ray at
+  /// most, in units of the slowness. A bounce of grazing angle θ off a slope m does by 2m·sin θ,
+  /// and makes the next one steeper by 2·atan m; slower water does, too.
+  [[nodiscard]] double turn(double steepest) const noexcept {
+    double sum = by_water_;
+    const double each = std::atan(slope_);
+    double grazing = std::acos(slowing_ * std::cos(steepest)) + each;
+    for (int i = 0; i < limits_.max_bottom_bounces && sum < 1.0; ++i, grazing += 2.0 * each)
+      sum += 2.0 * slope_ * std::sin(std::min(grazing, 0.5 * pi));
+    return 1.05 * sum;
+  }
+
   /// Lower left corner on the finest lattice, and how often the cell was cut each way.
   struct Cell {
     int row, column, row_cuts, column_cuts;
@@ -274,6 +292,7 @@ class Mesh {
     passes.reserve(ray_.legs.size());
     for (const LegPass& leg : ray_.legs) {
       Pass pass{.key = leg.history.key,
+                .facets = leg.history.facets,
                 .miss = leg.state.x - to_,
                 .tangent = leg.state.p.normalized(),
                 .x_launch = leg.state.x_launch};
@@ -328,7 +347,7 @@ class Mesh {
         cut = true;
       }
     }
-    if (border && cell.row_cuts < (near ? cuts : cuts_of_borders) && cell.column_cuts < cuts) {
+    if (border && cell.row_cuts < (near ? cuts : border_cuts_) && cell.column_cuts < cuts) {
       for (const int i : {0, 1})
         for (const int j : {0, 1})
           divide({cell.row + i * height / 2, cell.column + j * width / 2, cell.row_cuts + 1,
@@ -387,7 +406,10 @@ class Mesh {
       average += 0.25 * moves[i];
     }
     const double det = average(0, 0) * average(1, 1) - average(0, 1) * average(1, 0);
-    if (std::abs(det) > 1e-6 * average.squaredNorm()) {
+    const bool one_facet = std::all_of(family.begin(), family.end(), [&](const Pass* pass) {
+      return pass->facets == family[0]->facets;
+    });
+    if (one_facet && std::abs(det) > 1e-6 * average.squaredNorm()) {
       Mat2 inverse;
       inverse << average(1, 1), -average(0, 1), -average(1, 0), average(0, 0);
       inverse /= det;
@@ -421,7 +443,7 @@ class Mesh {
       }
       return bent[0] >= bent[1] ? Verdict::cut_elevation : Verdict::cut_azimuth;
     }
-    // A caustic in the cell: by places alone.
+    // A caustic in the cell, or an edge between facets: by places alone.
     Vec2 low(infinity, infinity), high(-infinity, -infinity);
     double widest = 0.0;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -505,7 +527,8 @@ class Mesh {
   VolumeSearchReport& report_;
   double longest_, bearing_;
   Refinement refine_;
-  double turn_ = 0.0;  // sine of the turn of a level ray, at most
+  double slope_ = 0.0, by_water_ = 0.0, slowing_ = 1.0;  // for turn()
+  int border_cuts_ = 0;
   int rows_ = 0, columns_ = 0;
   double d_elevation_ = 0.0, d_azimuth_ = 0.0;
   std::unordered_map<std::uint64_t, Vertex> vertices_;

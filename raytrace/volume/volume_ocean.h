@@ -24,6 +24,7 @@ struct VolumeFloor {
   double depth = 0.0;            ///< D [m]
   Vec2 gradient = Vec2::Zero();  ///< of D
   Mat2 hessian = Mat2::Zero();   ///< [1/m]; of a facet 0
+  std::size_t facet = 0;         ///< whose number it is, where the slope jumps between facets
 };
 
 /// Between two parallel planes: low ≤ normal·x ≤ high.

@@ -600,6 +600,7 @@ class VolumeTracer::Run {
     if (!surface) {
       const VolumeFloor floor = ocean_.floor(s_.x.x(), s_.x.y());
       const Vec3 f(floor.gradient.x(), floor.gradient.y(), -1.0);
+      history_.facets = history_.facets * 0x9E3779B97F4A7C15ULL + floor.facet;
       const double size = f.norm();
       n = f / size;
       bend.topLeftCorner<2, 2>() = floor.hessian / size;

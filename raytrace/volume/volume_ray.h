@@ -25,7 +25,8 @@ struct VolumeState {
 
 /// What happened to a ray before.
 struct VolumeHistory {
-  std::uint64_t key = 0;  ///< shared by rays that met the same boundaries in the same order
+  std::uint64_t key = 0;     ///< shared by rays that met the same boundaries in the same order
+  std::uint64_t facets = 0;  ///< shared by those that met the same facets of the floor
   int surface_bounces = 0, bottom_bounces = 0;
   int upper_turns = 0, lower_turns = 0;
   int caustics = 0;
