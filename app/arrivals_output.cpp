@@ -77,6 +77,8 @@ ordered_json json_of(const Arrivals& arrivals) {
     paths.push_back({{"kind", name_of(a.kind)},
                      {"launch_elevation_deg", degrees(a.launch_elevation)},
                      {"arrival_elevation_deg", degrees(a.arrival_elevation)},
+                     {"launch_deflection_deg", degrees(a.launch_deflection)},
+                     {"arrival_deflection_deg", degrees(a.arrival_deflection)},
                      {"delay", a.delay},
                      {"level_db", db_from_amplitude(std::abs(a.amplitude))},
                      {"phase_deg", degrees(std::arg(a.amplitude))},

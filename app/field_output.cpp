@@ -72,7 +72,7 @@ void write_field_file(OutputFile&& to, const FieldResult& result) {
   write_field(file, result.data);
   const auto& ranges = result.run_case.receivers.ranges;
   const auto [first, last] = std::minmax_element(ranges.begin(), ranges.end());
-  write_environment_group(file, result.run_case.environment, std::min(0.0, *first),
+  write_environment_group(file, plane_of(result.run_case), std::min(0.0, *first),
                           std::max(0.0, *last));
   output.finish();
 }

@@ -15,6 +15,8 @@ Arrival shown(const detail::Arrival& a) {
   Arrival result{.kind = static_cast<Arrival::Kind>(a.kind),
                  .launch_elevation = a.launch_elevation,
                  .arrival_elevation = a.arrival_elevation,
+                 .launch_deflection = a.launch_deflection,
+                 .arrival_deflection = a.arrival_deflection,
                  .delay = a.delay,
                  .amplitude = a.amplitude,
                  .spreading = a.spreading,

@@ -34,7 +34,8 @@ std::vector<detail::TrueEcho> truth_of(const detail::PingRecord& record, int arr
                        .time = path.delay,
                        .doppler = std::numeric_limits<double>::quiet_NaN(),
                        .level_db = detail::infinity,
-                       .travel = detail::direction(leg.bearing, path.arrival_elevation)});
+                       .travel = detail::direction(detail::arrival_bearing(path, leg.bearing),
+                                                   path.arrival_elevation)});
   }
   return truth;
 }

@@ -10,6 +10,7 @@
 #include "raytrace/runs/arrivals_run.h"
 #include "raytrace/runs/field_run.h"
 #include "raytrace/runs/rays_run.h"
+#include "raytrace/runs/volume_run.h"
 
 namespace asdic::detail {
 namespace {
@@ -43,7 +44,7 @@ std::string beyond_box_text(const PropagationCase& run_case) {
 /// How many receivers lie outside of the water, where no field is computed; "" where none does.
 std::string outside_text(const PropagationCase& run_case) {
   constexpr double on_boundary = 1e-3;  // [m]
-  const Environment& ocean = run_case.environment;
+  const Environment ocean = plane_of(run_case);
   const ReceiverGrid& grid = run_case.receivers;
   std::size_t below = 0, above = 0;
   for (std::size_t j = 0; j < grid.ranges.size(); ++j) {
@@ -65,6 +66,7 @@ std::string outside_text(const PropagationCase& run_case) {
 }
 
 PropagationResult run_task(const PropagationCase& run_case, const Progress& progress) {
+  if (run_case.dimension == 3) return run_volume(run_case, progress);
   switch (run_case.task) {
     case Task::rays:
       return run_rays(run_case, progress);
@@ -83,6 +85,19 @@ PropagationResult run_task(const PropagationCase& run_case, const Progress& prog
 
 PropagationResult run(const PropagationCase& run_case, const Progress& progress,
                       const MemoryBudget& budget) {
+  if (run_case.dimension == 2 && run_case.off_transect != 0.0) {
+    PropagationCase plane = run_case;
+    plane.environment = plane_of(run_case);
+    plane.off_transect = 0.0;
+    plane.on_area.reset();
+    return run(plane, progress, budget);
+  }
+  if (run_case.dimension == 3 && !run_case.on_area &&
+      is_layered(run_case.environment)) {  // nothing turns rays
+    PropagationCase plane = run_case;
+    plane.dimension = 2;
+    return run(plane, progress, budget);
+  }
   static_cast<void>(run_memory(run_case, budget));
   PropagationResult result = run_task(run_case, progress);
   if (run_case.task != Task::rays && all_beyond_box(run_case))

@@ -34,8 +34,11 @@ struct Bounce {
 struct ASDIC_API Arrival {
   enum class Kind { ray, diffracted, caustic };
   Kind kind = Kind::ray;
-  double launch_elevation = 0.0;          ///< [rad]
-  double arrival_elevation = 0.0;         ///< [rad]
+  double launch_elevation = 0.0;   ///< [rad]
+  double arrival_elevation = 0.0;  ///< [rad]
+  /// Of travel where it leaves and where it arrives, clockwise from the straight line on the map;
+  /// 0 where rays keep to vertical planes [rad]
+  double launch_deflection = 0.0, arrival_deflection = 0.0;
   double delay = 0.0;                     ///< [s]
   std::complex<double> amplitude = 0.0;   ///< all losses in it, re 1 m
   double spreading = 0.0;                 ///< |amplitude| of the ray tube alone, re 1 m

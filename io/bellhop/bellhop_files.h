@@ -34,6 +34,8 @@ struct ArrivalRow {
   double delay_imaginary = 0.0;  ///< ≤ 0; amplitude × exp(2πf·delay_imaginary) has the absorption
   double launch_angle_deg = 0.0, arrival_angle_deg = 0.0;
   int surface_bounces = 0, bottom_bounces = 0;
+  /// In three dimensions: of travel, clockwise from the line to the receiver; not in `.arr`
+  double launch_deflection_deg = 0.0, arrival_deflection_deg = 0.0;
 };
 
 /// Arrivals, `.arr`, ASCII or binary.

@@ -42,7 +42,9 @@ ArrivalRow row_of(const Arrival& arrival, double frequency) {
           .launch_angle_deg = declination(arrival.launch_elevation),
           .arrival_angle_deg = declination(arrival.arrival_elevation),
           .surface_bounces = arrival.surface_bounces,
-          .bottom_bounces = arrival.bottom_bounces};
+          .bottom_bounces = arrival.bottom_bounces,
+          .launch_deflection_deg = degrees(arrival.launch_deflection),
+          .arrival_deflection_deg = degrees(arrival.arrival_deflection)};
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "core/geometry.h"
 #include "raytrace/paths/trace_ray.h"
+#include "raytrace/volume/volume_eigenrays.h"
 
 namespace asdic::detail {
 namespace {
@@ -37,6 +38,16 @@ RayPaths::Path drawn(const RayPath& ray, RayPaths::Kind kind) {
   for (const RayPoint& point : ray.points) {
     path.range.push_back(point.range);
     path.depth.push_back(point.depth);
+  }
+  return path;
+}
+
+/// An eigenray of a volume, unrolled: horizontal distances from the source.
+RayPaths::Path unrolled(std::span<const Vec3> track, double launch_elevation) {
+  RayPaths::Path path{.kind = RayPaths::Kind::eigenray, .launch_elevation = launch_elevation};
+  for (const Vec3& place : track) {
+    path.range.push_back(separation(track.front(), place).range);
+    path.depth.push_back(place.z());
   }
   return path;
 }
@@ -104,6 +115,15 @@ RayPaths drawn_rays(const PingSimulator& simulator) {
     if (target.first_ping > 1 || target.last_ping < 1) continue;
     const Vec3 position = target.track.at(0.0).position;
     const Separation way = separation(source, position);
+    if (const VolumeOcean* volume = paths.volume()) {
+      const double frequency = simulator.pulse().centre_frequency();
+      const Arrivals arrivals = paths.find(source, position, frequency, limits_of(limits));
+      const VolumeTracer tracer(*volume, frequency);
+      for (std::size_t i = 0; i < std::min(arrivals.size(), most_eigenrays); ++i)
+        result.paths.push_back(unrolled(volume_track(tracer, arrivals[i], source, position),
+                                        arrivals[i].launch_elevation));
+      continue;
+    }
     const auto plane = paths.solver(paths.plane(source, way.bearing, way.range));
     const Arrivals arrivals = plane->find(source.z(), position.z(), way.range,
                                           simulator.pulse().centre_frequency(), limits_of(limits));

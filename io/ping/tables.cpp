@@ -52,7 +52,7 @@ std::vector<GrowingTable::Column> interference_columns() {
           {"delay", "since it left the ship, at the record's first sample", "s"},
           {"doppler_factor", "received over transmitted frequency", ""},
           {"range", "from where the ship was, horizontal", "m"},
-          {"bearing_deg", "of travel, true (clockwise from north)", "degree"},
+          {"bearing_deg", "of travel at the array, true (clockwise from north)", "degree"},
           {"launch_elevation_deg", "at the ship, positive up", "degree"},
           {"arrival_elevation_deg", "of travel at the array, positive up", "degree"},
           {"amplitude_real", "re 1 m", ""},

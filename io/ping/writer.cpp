@@ -213,7 +213,7 @@ void PingFileWriter::Impl::append_tables(const PingRecord& record) {
   }
   for (const ReceivedPath& p : record.interference)
     interference->row({double(record.ping), double(p.interferer), double(p.array), p.delay,
-                       p.doppler, p.range, compass_degrees(p.bearing),
+                       p.doppler, p.range, compass_degrees(arrival_bearing(p.path, p.bearing)),
                        degrees(p.path.launch_elevation), degrees(p.path.arrival_elevation),
                        p.path.amplitude.real(), p.path.amplitude.imag(),
                        double(p.path.surface_bounces), double(p.path.bottom_bounces)});

@@ -30,6 +30,9 @@ std::vector<GrowingTable::Column> columns() {
       {"range", "horizontal distance of the receiver", "m"},
       {"launch_elevation_deg", "elevation of travel at the start, positive up", "degree"},
       {"arrival_elevation_deg", "elevation of travel at the end, positive up", "degree"},
+      {"launch_deflection_deg", "of travel at the start, clockwise from the line to the receiver",
+       "degree"},
+      {"arrival_deflection_deg", "of travel at the end, clockwise from that line", "degree"},
       {"delay", "travel time", "s"},
       {"amplitude_real", "pressure re 1 m, real part", ""},
       {"amplitude_imag", "pressure re 1 m, imaginary part", ""},
@@ -48,6 +51,10 @@ class Table {
     delay = column("delay");
     launch = column("launch_elevation_deg");
     arrival = column("arrival_elevation_deg");
+    if (has("launch_deflection_deg")) {  // since version 1.3
+      launch_aside = column("launch_deflection_deg");
+      arrival_aside = column("arrival_deflection_deg");
+    }
     real = column("amplitude_real");
     imag = column("amplitude_imag");
     absorption = column("absorption_db");
@@ -77,7 +84,9 @@ class Table {
             .launch_angle_deg = -launch[i],  // declination
             .arrival_angle_deg = -arrival[i],
             .surface_bounces = static_cast<int>(surface[i]),
-            .bottom_bounces = static_cast<int>(bottom[i])};
+            .bottom_bounces = static_cast<int>(bottom[i]),
+            .launch_deflection_deg = launch_aside.empty() ? 0.0 : launch_aside[i],
+            .arrival_deflection_deg = arrival_aside.empty() ? 0.0 : arrival_aside[i]};
   }
 
   [[nodiscard]] InputError fault(const std::string& name, const std::string& got,
@@ -86,7 +95,8 @@ class Table {
         {.where = file_.path().string() + ": arrivals/" + name, .got = got, .expected = expected});
   }
 
-  std::vector<double> delay, launch, arrival, real, imag, absorption, range, surface, bottom;
+  std::vector<double> delay, launch, arrival, launch_aside, arrival_aside, real, imag, absorption,
+      range, surface, bottom;
 
  private:
   const Hdf5File& file_;
@@ -171,9 +181,10 @@ void write_arrivals(Hdf5File& file, const ArrivalsFile& arrivals) {
           std::polar(a.amplitude * std::exp(w * a.delay_imaginary), radians(a.phase_deg));
       table.row({static_cast<double>(i / (rows * ranges)), static_cast<double>(i / ranges % rows),
                  static_cast<double>(i % ranges), arrivals.receiver_ranges[i % ranges],
-                 -a.launch_angle_deg, -a.arrival_angle_deg, a.delay, pressure.real(),
-                 pressure.imag(), -w * a.delay_imaginary * db_per_neper, a.amplitude, a.phase_deg,
-                 a.delay_imaginary, double(a.surface_bounces), double(a.bottom_bounces)});
+                 -a.launch_angle_deg, -a.arrival_angle_deg, a.launch_deflection_deg,
+                 a.arrival_deflection_deg, a.delay, pressure.real(), pressure.imag(),
+                 -w * a.delay_imaginary * db_per_neper, a.amplitude, a.phase_deg, a.delay_imaginary,
+                 double(a.surface_bounces), double(a.bottom_bounces)});
     }
   table.write();
 }

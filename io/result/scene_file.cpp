@@ -146,7 +146,7 @@ void write_scene(const std::filesystem::path& path, const PropagationCase& run) 
     file.set_attribute("", "irregular", std::int64_t{run.receivers.irregular});
     last = *std::max_element(run.receivers.ranges.begin(), run.receivers.ranges.end());
   }
-  write_environment_group(file, run.environment, 0.0, last > 0.0 ? last : 50e3);
+  write_environment_group(file, plane_of(run), 0.0, last > 0.0 ? last : 50e3);
   file.close();
 }
 

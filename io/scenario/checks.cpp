@@ -292,12 +292,22 @@ void check_size(TomlTable& root, const Scenario& scenario) {
   budget.take(record_need(scenario, samples, pings.where("recording_duration")));
 }
 
+void check_dimension(TomlTable& root, const Scenario& scenario) {
+  if (scenario.propagation.dimension == 3 && scenario.environment.surface.shape)
+    throw root.table("propagation")
+        .fault("dimension",
+               "2: rays in three dimensions know a flat surface only, and environment.surface has "
+               "a shape",
+               "3");
+}
+
 void check_fathometer(TomlTable& root, const Scenario& scenario) {
-  if (scenario.propagation.fathometer && ocean_on_map(scenario).varies())
+  if (scenario.propagation.fathometer && scenario.propagation.dimension != 3 &&
+      ocean_on_map(scenario).varies())
     throw root.table("propagation")
         .fault("fathometer",
-               "false where the ocean varies along a transect: a mirror that slopes is not in the "
-               "plane of transmitter and array",
+               "false where the ocean varies along a transect, or propagation.dimension = 3: a "
+               "mirror that slopes is not in the plane of transmitter and array",
                "true");
 }
 
@@ -337,6 +347,7 @@ void check_scenario(TomlTable& root, const Scenario& scenario) {
   check_targets(root, scenario);
   check_interferers(root, scenario);
   check_size(root, scenario);
+  check_dimension(root, scenario);
   check_fathometer(root, scenario);
   check_intervals(root, scenario);
   for (std::size_t t = 0; t < scenario.transmitters.size(); ++t)

@@ -40,9 +40,13 @@ PropagationCase of_ocean_and_run(const TomlValue& document, const std::filesyste
       scenario::read_area(environment, reading, scenario::read_origin(environment));
   if (area) reading.area = &*area;
   run.environment = scenario::read_ocean(environment, reading);
-  if (area)
-    run.environment =
-        along_transect(*area->build(run.environment), scenario::read_transect(environment));
+  if (area) {
+    const Transect transect = scenario::read_transect(environment);
+    run.on_area = {.area = area->build(run.environment),
+                   .place = Vec2(transect.x, transect.y),
+                   .bearing = transect.bearing};
+    run.environment = along_transect(*run.on_area->area, transect);
+  }
   environment.finish();
   scenario::read_run(std::move(table), run);
   root.finish();
@@ -59,6 +63,9 @@ PropagationCase of_sonar(const TomlValue& document, const Scenario& scenario,
   run.title = scenario.title;
   run.environment =
       ocean_on_map(scenario).plane(platform.head<2>(), scenario.transect.bearing, reach_of_area);
+  if (scenario.area)
+    run.on_area = {
+        .area = scenario.area, .place = platform.head<2>(), .bearing = scenario.transect.bearing};
   run.frequency = Pulse(scenario.pulse).centre_frequency();
   run.source_depths = {platform.z()};
   TomlTable root(document);

@@ -220,6 +220,11 @@ void describe_box(Fields& field, PropagationCase& run) {
 
 void RunTable::describe(Fields& field) {
   field("task", run.task, "what is computed");
+  field("dimension", run.dimension, 2, 3,
+        "3: rays are turned out of their vertical planes, too; a field is the sum of its paths");
+  field(seldom("off_transect"), run.off_transect,
+        AngleQuantity{.noun = "angle", .low_deg = -180.0, .high_deg = 180.0},
+        "of the line on which the receivers lie, clockwise from the transect");
   field("field", run.field, "how a field adds its paths");
   field("solver", run.solver, "what a coherent field is made of; other fields are made of beams");
   field(by_default("frequency", "the middle of the pulse; required without a sonar"), run.frequency,

@@ -88,7 +88,8 @@ UNITS = {"delay": "s", "struck": "s", "path_length": "m", "range": "m", "depth":
 ARRIVAL_UNITS = {"delay": "s", "path_length": "m", "range": "m", "level_db": "dB re 1 m",
                  "spreading_db": "dB", "absorption_db": "dB", "amplitude": "re 1 m",
                  "bearing_deg": "degrees", "launch_elevation_deg": "degrees",
-                 "arrival_elevation_deg": "degrees", "bounce_range": "m",
+                 "arrival_elevation_deg": "degrees", "launch_deflection_deg": "degrees",
+                 "arrival_deflection_deg": "degrees", "bounce_range": "m",
                  "bounce_grazing_deg": "degrees"}
 
 

@@ -12,7 +12,6 @@ namespace asdic::detail {
 namespace {
 
 constexpr double straight_error = 0.04;  // of speeds between the levels of sections [m/s]
-constexpr double film = 0.1;             // of water over land [m]
 constexpr int land = -1;                 // as a kind of sea floor
 constexpr int unmapped = -2;             // the one kind of a sea floor without a map of kinds
 
@@ -103,7 +102,7 @@ class FloorTracer {
   [[nodiscard]] FloorSample at(double r) const {
     const double x = place_.x() + r * way_.x(), y = place_.y() + r * way_.y();
     const MapValue floor = area_.floor().at(x, y);
-    const double top = area_.surface_depth() + film;
+    const double top = area_.surface_depth() + Area::film;
     if (floor.value <= top) return {.range = r, .depth = top, .slope = 0.0, .kind = land};
     return {.range = r,
             .depth = floor.value,

@@ -14,6 +14,8 @@ namespace asdic::detail {
 /// docs/theory/area.md
 class Area {
  public:
+  static constexpr double film = 0.1;  ///< of water over land [m]
+
   struct Maps {
     ScalarMap floor;                      ///< depths [m], at most 0 on land
     std::optional<WaterMap> water = {};   ///< none: Environment::water everywhere

@@ -135,6 +135,17 @@ MapValue ScalarMap::faceted(const MapFrame::OnGrid& place) const {
   return on_map(f, place);
 }
 
+std::size_t ScalarMap::facet(double x, double y) const noexcept {
+  const MapFrame::OnGrid place = frame_.on_grid(x, y);
+  const MapAxis &across = grid_->x(), &up = grid_->y();
+  const double u = std::clamp(on_axis(frame_, across, place.u), across.begin(), across.end()),
+               v = std::clamp(place.v, up.begin(), up.end());
+  const std::size_t i = across.interval(u), j = up.interval(v);
+  const double s = (u - across.places()[i]) / (across.places()[i + 1] - across.places()[i]),
+               t = (v - up.places()[j]) / (up.places()[j + 1] - up.places()[j]);
+  return 2 * (j * across.size() + i) + (s >= t ? 0 : 1);
+}
+
 WaterMap::WaterMap(std::shared_ptr<const MapGrid> grid, MapFrame frame, std::vector<double> depths,
                    MapOrigin origin)
     : grid_(std::move(grid)),

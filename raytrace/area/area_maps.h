@@ -45,6 +45,8 @@ class ScalarMap {
 
   /// \throws InputError where the map has a hole, by its place
   [[nodiscard]] MapValue at(double x, double y) const;
+  /// Which triangle of a faceted map a place is on.
+  [[nodiscard]] std::size_t facet(double x, double y) const noexcept;
   /// Whether a place is on the map: elsewhere its edge goes on.
   [[nodiscard]] bool covers(double x, double y) const noexcept;
   /// The shorter step of the grid there [m].

@@ -39,6 +39,14 @@ void check(const PropagationCase& run_case) {
   if (run_case.task != Task::rays &&
       (run_case.receivers.depths.empty() || run_case.receivers.ranges.empty()))
     throw InputError({.where = "receivers", .got = "none", .expected = "depths and ranges"});
+  if (run_case.dimension != 2)
+    throw InputError({.where = "run.dimension",
+                      .got = "3",
+                      .expected = "2: BELLHOP's rays keep to the vertical plane"});
+  if (run_case.off_transect != 0.0)
+    throw InputError({.where = "run.off_transect",
+                      .got = "an angle",
+                      .expected = "0: BELLHOP's receivers lie along the transect"});
   if (!(run_case.box_range > 0.0) || !(run_case.box_depth > 0.0))
     throw InputError(
         {.where = "box", .got = "nothing", .expected = "a range and a depth where rays end"});

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+
+#include "raytrace/ocean/slice.h"
 
 namespace asdic::detail {
 
@@ -14,6 +17,13 @@ double SourcePattern::at(double launch_elevation) const noexcept {
       static_cast<std::size_t>(std::upper_bound(first, last, launch_elevation) - elevation.begin());
   const double share = (launch_elevation - elevation[i - 1]) / (elevation[i] - elevation[i - 1]);
   return amplitude[i - 1] + share * (amplitude[i] - amplitude[i - 1]);
+}
+
+Environment plane_of(const PropagationCase& run_case) {
+  if (run_case.on_area && run_case.off_transect != 0.0)
+    return run_case.on_area->area->section(
+        run_case.on_area->place, run_case.on_area->bearing + run_case.off_transect, reach_of_area);
+  return slice(run_case.environment, 0.0, std::cos(run_case.off_transect));
 }
 
 }  // namespace asdic::detail

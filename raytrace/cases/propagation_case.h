@@ -1,10 +1,11 @@
 #pragma once
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/units.h"
-#include "raytrace/ocean/environment.h"
+#include "raytrace/area/ocean_on_map.h"
 
 namespace asdic::detail {
 
@@ -97,7 +98,16 @@ struct LiteralSettings {
 struct PropagationCase {
   std::string title;
   double frequency = 1000.0;  ///< [Hz]
-  Environment environment;
+  Environment environment;    ///< along the transect
+  /// The area that it is cut out of: from a place on the map along a bearing.
+  struct OnArea {
+    std::shared_ptr<const Area> area;
+    Vec2 place = Vec2::Zero();
+    double bearing = 0.0;  ///< [rad]
+  };
+  std::optional<OnArea> on_area;  ///< none: the same everywhere across the transect
+  int dimension = 2;              ///< 3: rays are turned out of their planes, too
+  double off_transect = 0.0;      ///< of the line on which the receivers lie, clockwise [rad]
   std::vector<double> source_depths = {100.0};  ///< [m]
   ReceiverGrid receivers;
   Task task = Task::field;
@@ -108,5 +118,8 @@ struct PropagationCase {
   double box_depth = 0.0;  ///< rays end this far below and above depth 0 [m]
   LiteralSettings literal;
 };
+
+/// The vertical plane through sources and receivers, `environment` unless they lie elsewhere.
+[[nodiscard]] Environment plane_of(const PropagationCase& run_case);
 
 }  // namespace asdic::detail

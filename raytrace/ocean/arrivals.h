@@ -36,7 +36,7 @@ struct Arrival {
   /// where it leaves and where it arrives; 0 where rays keep to a vertical plane [rad]
   double launch_deflection = 0.0;
   double arrival_deflection = 0.0;  ///< [rad]
-  double delay = 0.0;              ///< τ [s]
+  double delay = 0.0;               ///< τ [s]
   std::complex<double> amplitude =
       0.0;                 ///< spreading × reflections × absorption × caustic phase [1/m × 1 m]
   double spreading = 0.0;  ///< |amplitude| of the ray tube alone, tube_amplitude() [1/m × 1 m]
@@ -55,6 +55,14 @@ struct Arrival {
   int caustics = 0;             ///< zeros of q passed
   std::vector<Bounce> bounces;  ///< in the order in which they happen
 };
+
+/// True bearings of travel at both ends. \param line  of the straight line between them [rad]
+[[nodiscard]] inline double launch_bearing(const Arrival& path, double line) noexcept {
+  return line + path.launch_deflection;
+}
+[[nodiscard]] inline double arrival_bearing(const Arrival& path, double line) noexcept {
+  return line + path.arrival_deflection;
+}
 
 /// Eigenrays from one source to one receiver, sorted by delay.
 using Arrivals = std::vector<Arrival>;

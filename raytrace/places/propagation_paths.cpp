@@ -9,6 +9,7 @@
 #include "core/geometry.h"
 #include "raytrace/ocean/slice.h"
 #include "raytrace/places/followed_path.h"
+#include "raytrace/volume/volume_eigenrays.h"
 #include "raytrace/waves/caustics.h"
 #include "raytrace/waves/cycles.h"
 #include "raytrace/waves/diffraction.h"
@@ -86,8 +87,9 @@ bool keeps_amplitude(const Arrival& known, Arrival& followed, double frequency) 
 }  // namespace
 
 void add_path(ExactKey& key, const Arrival& path) {
-  key.add_all(path.kind, path.launch_elevation, path.horizontal_slowness, path.surface_bounces,
-              path.bottom_bounces, path.upper_turns, path.lower_turns, path.caustics);
+  key.add_all(path.kind, path.launch_elevation, path.launch_deflection, path.horizontal_slowness,
+              path.surface_bounces, path.bottom_bounces, path.upper_turns, path.lower_turns,
+              path.caustics);
 }
 
 void add_to(ExactKey& key, const CycleNeed& need) {
@@ -114,14 +116,16 @@ void add_to(ExactKey& key, const Plane& plane, bool area) {
 
 PropagationPaths::PropagationPaths(const Environment& ocean, const Transect& transect,
                                    std::shared_ptr<const Area> area,
-                                   std::shared_ptr<PropagationMemory> memory)
+                                   std::shared_ptr<PropagationMemory> memory,
+                                   std::shared_ptr<const VolumeOcean> volume)
     : along_(ocean),
       transect_(transect),
       area_(std::move(area)),
       layered_(is_layered(ocean) && !area_),
       identity_(next_identity()),
       memory_(memory ? std::move(memory)
-                     : std::make_shared<PropagationMemory>(own_bytes, own_pings)) {}
+                     : std::make_shared<PropagationMemory>(own_bytes, own_pings)),
+      volume_(std::move(volume)) {}
 
 Plane PropagationPaths::plane(const Vec3& from, double bearing, double reach) const noexcept {
   return {.origin = along(from),
@@ -167,12 +171,21 @@ std::shared_ptr<const EigenraySolver> PropagationPaths::solver(const Plane& plan
 ExactKey PropagationPaths::leg_key(Kept kind, const Vec3& from, const Vec3& to, double frequency,
                                    const PathLimits& limits) const {
   ExactKey leg = key(kind, from.z(), to.z(), separation(from, to).range, frequency, limits);
-  if (!layered_) add_to(leg, plane(from, to), area_ != nullptr);
+  if (layered_) return leg;
+  if (volume()) return leg.add_all(from.x(), from.y(), to.x(), to.y());
+  add_to(leg, plane(from, to), area_ != nullptr);
   return leg;
 }
 
 Arrivals PropagationPaths::search(const Vec3& from, const Vec3& to, double frequency,
                                   const PathLimits& limits) const {
+  if (const VolumeOcean* ocean = volume())
+    return volume_eigenrays(VolumeTracer(*ocean, frequency), from, to, limits);
+  return search_plane(from, to, frequency, limits);
+}
+
+Arrivals PropagationPaths::search_plane(const Vec3& from, const Vec3& to, double frequency,
+                                        const PathLimits& limits) const {
   const double range = separation(from, to).range;
   if (layered_) {
     Arrivals found = along_.find(from.z(), to.z(), range, frequency, limits);
@@ -191,6 +204,17 @@ Arrivals PropagationPaths::search(const Vec3& from, const Vec3& to, double frequ
     return found;
   }
   return solver(plane(from, to))->find(from.z(), to.z(), range, frequency, limits);
+}
+
+Arrivals PropagationPaths::find_in_plane(const Vec3& from, const Vec3& to, double frequency,
+                                         const PathLimits& limits) const {
+  if (!volume()) return find(from, to, frequency, limits);
+  const Plane line = plane(from, to);
+  return *memory_->remember(
+      key(Kept::legs, from.z(), to.z(), separation(from, to).range, frequency, limits, line.origin,
+          line.cos_beta),
+      [&] { return std::make_shared<Arrivals>(search_plane(from, to, frequency, limits)); },
+      bytes_of_arrivals);
 }
 
 Arrivals PropagationPaths::find(const Vec3& from, const Vec3& to, double frequency,
@@ -224,8 +248,10 @@ Arrivals PropagationPaths::followed(std::span<const Arrival> known, const Vec3& 
                                     const Vec3& to, double frequency,
                                     const PathLimits& limits) const {
   const double range = separation(from, to).range;
+  std::optional<VolumeTracer> in_volume;
+  if (volume()) in_volume.emplace(*volume(), frequency);
   std::optional<RayTracer> tracer;
-  if (!layered_) tracer.emplace(environment_of(plane(from, to)), frequency);
+  if (!layered_ && !volume()) tracer.emplace(environment_of(plane(from, to)), frequency);
   Arrivals found;
   for (const Arrival& path : known) {
     std::optional<Arrival> same;
@@ -233,7 +259,9 @@ Arrivals PropagationPaths::followed(std::span<const Arrival> known, const Vec3& 
       same = diffracted_arrival(along_.environment(), from.z(), to.z(), range, frequency);
     else if (layered_)
       same = along_.follow(path, from.z(), to.z(), range, frequency, limits);
-    else if (!layered_)
+    else if (in_volume)
+      same = followed_volume_path(*in_volume, path, from, to);
+    else
       same = followed_path(*tracer, path, from.z(), to.z(), range);
     if (path.kind == ArrivalKind::caustic && !(same && keeps_amplitude(path, *same, frequency)))
       return find(from, to, frequency, limits);  // that of all rays of its term

@@ -7,6 +7,7 @@
 #include "raytrace/area/ocean_on_map.h"
 #include "raytrace/paths/eigenrays.h"
 #include "raytrace/places/reuse.h"
+#include "raytrace/volume/volume_ocean.h"
 
 namespace asdic::detail {
 
@@ -24,16 +25,19 @@ struct Plane {
 ///
 /// In a layered ocean one solver serves all places. Where the ocean varies along a transect or over
 /// an area, sound travels in the vertical plane through both places (N × 2D), and each plane is a
-/// slice of the ocean with a solver of its own. The slices and eigenrays that were used last are
-/// kept. Shared by threads; what comes out does not depend on what is kept.
-/// docs/theory/transect.md, docs/theory/area.md
+/// slice of the ocean with a solver of its own. Where a volume is given, eigenrays are searched in
+/// it. The slices and eigenrays that were used last are kept. Shared by threads; what comes out
+/// does not depend on what is kept. docs/theory/transect.md, docs/theory/area.md
 class PropagationPaths {
  public:
   /// \param area  none: the ocean along the transect is all   \param memory  of what was found;
-  /// none: one of its own, which forgets what 64 pings did not use
+  /// none: one of its own, which forgets what 64 pings did not use   \param volume  the same ocean
+  /// in three dimensions: eigenrays are those of the volume then, unless the ocean is layered,
+  /// where both are the same
   PropagationPaths(const Environment& ocean, const Transect& transect,
                    std::shared_ptr<const Area> area = nullptr,
-                   std::shared_ptr<PropagationMemory> memory = nullptr);
+                   std::shared_ptr<PropagationMemory> memory = nullptr,
+                   std::shared_ptr<const VolumeOcean> volume = nullptr);
   PropagationPaths(const PropagationPaths&) = delete;
   PropagationPaths& operator=(const PropagationPaths&) = delete;
 
@@ -72,6 +76,15 @@ class PropagationPaths {
   /// Speed of sound at a place [m/s].
   [[nodiscard]] double speed_at(const Vec3& place) const;
 
+  /// The volume that eigenrays go through; null: they keep to vertical planes.
+  [[nodiscard]] const VolumeOcean* volume() const noexcept {
+    return layered_ ? nullptr : volume_.get();
+  }
+
+  /// Those of the vertical plane through both places, in three dimensions, too: what is to be known
+  /// beforehand, how many bounces there are for instance, is asked of it.
+  [[nodiscard]] Arrivals find_in_plane(const Vec3& from, const Vec3& to, double frequency,
+                                       const PathLimits& limits) const;
   /// All eigenrays from one place to another, sorted by delay. \param reuse  counts what was known
   [[nodiscard]] Arrivals find(const Vec3& from, const Vec3& to, double frequency,
                               const PathLimits& limits, Reuse* reuse = nullptr) const;
@@ -85,6 +98,8 @@ class PropagationPaths {
  private:
   [[nodiscard]] Plane plane(const Vec3& from, const Vec3& to) const noexcept;
   [[nodiscard]] Environment environment_of(const Plane& plane) const;
+  [[nodiscard]] Arrivals search_plane(const Vec3& from, const Vec3& to, double frequency,
+                                      const PathLimits& limits) const;
   [[nodiscard]] Arrivals search(const Vec3& from, const Vec3& to, double frequency,
                                 const PathLimits& limits) const;
   [[nodiscard]] ExactKey leg_key(Kept kind, const Vec3& from, const Vec3& to, double frequency,
@@ -98,6 +113,7 @@ class PropagationPaths {
   bool layered_;
   std::uint64_t identity_;  // of this ocean in a memory that several share
   std::shared_ptr<PropagationMemory> memory_;
+  std::shared_ptr<const VolumeOcean> volume_;
 };
 
 void add_to(ExactKey& key, const PathLimits& limits);

@@ -9,6 +9,8 @@
 
 #include "core/geometry.h"
 #include "raytrace/ocean/tube_amplitude.h"
+#include "raytrace/parallel/parallel.h"
+#include "raytrace/parallel/stop.h"
 
 namespace asdic::detail {
 namespace volume {  // with names that others use, too
@@ -20,7 +22,8 @@ constexpr double on_the_leg = 1e-4;        // beyond the ends of a leg [m]
 constexpr double coarse = 1e-3;            // of a step of the mesh's rays [m]
 constexpr double fine = 1e-7;              // of a step of an eigenray [m]
 constexpr double uniform_mesh = 6.0;       // of launch angles, where rays are straight [deg]
-constexpr double bent_mesh = 1.5;          // and elsewhere
+constexpr double bent_mesh = 1.5;          // and elsewhere, twice that of steep rays
+constexpr double flat_rays = 30.0;         // those that may turn in the water [deg]
 constexpr int cuts = 7;                    // a cell is cut in halves so often, each way
 constexpr int cuts_of_borders = 3;         // the same where families part, in uniform water
 constexpr int cuts_of_bent_borders = 1;    // and elsewhere
@@ -204,26 +207,28 @@ class Mesh {
     const double mesh = radians(uniform ? uniform_mesh : bent_mesh);
     border_cuts_ = uniform ? cuts_of_borders : cuts_of_bent_borders;
     slowing_ = uniform ? 1.0 : 0.94;
-    const double most = std::min(limits.max_launch_angle, 0.5 * pi);
-    rows_ = std::max(2, int(std::ceil(2.0 * most / mesh)));
-    if (rows_ % 2 != 0) ++rows_;
-    d_elevation_ = 2.0 * most / rows_;
-    const double level = std::asin(std::min(1.0, turn(0.0)));
-    d_azimuth_ = std::clamp(0.5 * level, 2e-3, radians(uniform_mesh));
+    // Never quite at a pole, where directions have no azimuth.
+    const double most = std::min(limits.max_launch_angle, 0.5 * pi - 1e-6);
+    const double level = std::min(most, uniform ? most : radians(flat_rays));
+    const int half = std::max(1, int(std::ceil(level / mesh)));
+    const int steep = most > level ? std::max(1, int(std::ceil((most - level) / (2.0 * mesh)))) : 0;
+    for (int i = -half - steep; i <= half + steep; ++i) {
+      const int n = std::abs(i);
+      const double e = n <= half ? level * n / half : level + (most - level) * (n - half) / steep;
+      rows_.push_back(std::copysign(e, double(i)));
+    }
+    coarse_ = std::clamp(1e-6 * (to - from).norm(), coarse, 0.1);
+    d_azimuth_ = std::clamp(0.5 * std::asin(std::min(1.0, turn(0.0))), 2e-3, radians(uniform_mesh));
     // a whole number to the half turn, so that no cell is beyond it
     columns_ = int(std::ceil(pi / d_azimuth_));
     d_azimuth_ = pi / columns_;
   }
 
   Arrivals search() {
-    for (int row = 0; row < rows_; ++row) {
-      const double low = std::abs(elevation(row << cuts)),
-                   high = std::abs(elevation((row + 1) << cuts));
-      const double steepest = std::max(low, high), cosine = std::cos(steepest);
-      const double most = turn(steepest);
-      const double reach = most >= cosine ? pi : std::asin(most / cosine);
-      const int columns = std::min(columns_, int(std::ceil(reach / d_azimuth_ + 1e-9)) + 0);
-      for (int column = -std::max(columns, 1); column < std::max(columns, 1); ++column)
+    trace_corners();
+    for (int row = 0; row + 1 < int(rows_.size()); ++row) {
+      const int columns = columns_of(row);
+      for (int column = -columns; column < columns; ++column)
         look({row << cuts, column << cuts, 0, 0});
     }
     Arrivals found;
@@ -266,31 +271,71 @@ class Mesh {
     double cosine;
   };
 
-  /// Never quite at a pole, where directions have no azimuth.
   [[nodiscard]] double elevation(int row) const noexcept {
-    constexpr double steepest = 0.5 * pi - 1e-6;
-    return std::clamp((double(row) / double(1 << cuts) - 0.5 * rows_) * d_elevation_, -steepest,
-                      steepest);
+    const auto base = std::size_t(row >> cuts);
+    if (base + 1 >= rows_.size()) return rows_.back();
+    const double part = double(row & ((1 << cuts) - 1)) / double(1 << cuts);
+    return rows_[base] + part * (rows_[base + 1] - rows_[base]);
+  }
+  /// Cells either side of the receiver's bearing that rays of a row can reach it from.
+  [[nodiscard]] int columns_of(int row) const noexcept {
+    const double steepest =
+        std::max(std::abs(rows_[std::size_t(row)]), std::abs(rows_[std::size_t(row) + 1]));
+    const double cosine = std::cos(steepest), most = turn(steepest);
+    const double reach = most >= cosine ? pi : std::asin(most / cosine);
+    return std::clamp(int(std::ceil(reach / d_azimuth_ + 1e-9)), 1, columns_);
   }
   [[nodiscard]] double azimuth(int column) const noexcept {
     return bearing_ + double(column) / double(1 << cuts) * d_azimuth_;
   }
 
+  /// The rays of all cells before any is cut, many at a time.
+  void trace_corners() {
+    std::vector<std::pair<int, int>> corners;
+    for (int row = 0; row < int(rows_.size()); ++row) {
+      int columns = 0;
+      for (const int beside : {row - 1, row})
+        if (beside >= 0 && beside + 1 < int(rows_.size()))
+          columns = std::max(columns, columns_of(beside));
+      for (int column = -columns; column <= columns; ++column)
+        corners.emplace_back(row << cuts, column << cuts);
+    }
+    std::vector<Vertex> traced(corners.size());
+    constexpr std::size_t side_by_side = 64;
+    in_parallel_chunks(corners.size(), side_by_side, [&](std::size_t begin, std::size_t end) {
+      VolumeRay ray;
+      for (std::size_t i = begin; i < end; ++i)
+        traced[i].passes = passes(corners[i].first, corners[i].second, ray);
+    });
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      vertices_.emplace(name_of(corners[i].first, corners[i].second), std::move(traced[i]));
+    report_.rays += corners.size();
+  }
+
+  static std::uint64_t name_of(int row, int column) noexcept {
+    return (std::uint64_t(std::uint32_t(row)) << 32) | std::uint32_t(column);
+  }
+
   const Vertex& vertex(int row, int column) {
-    const std::uint64_t name = (std::uint64_t(std::uint32_t(row)) << 32) | std::uint32_t(column);
-    const auto [at, fresh] = vertices_.try_emplace(name);
+    const auto [at, fresh] = vertices_.try_emplace(name_of(row, column));
     if (!fresh) return at->second;
     ++report_.rays;
+    if (report_.rays % 256 == 0) stop_point();
+    at->second.passes = passes(row, column, ray_);
+    return at->second;
+  }
+
+  [[nodiscard]] std::vector<Pass> passes(int row, int column, VolumeRay& ray) const {
     const VolumeLimits limits{.max_surface_bounces = limits_.max_surface_bounces,
                               .max_bottom_bounces = limits_.max_bottom_bounces,
                               .longest = longest_,
                               .faintest = limits_.faintest,
-                              .tolerance = coarse,
+                              .tolerance = coarse_,
                               .losses = limits_.faintest > 0.0};
-    tracer_.trace(from_, direction(azimuth(column), elevation(row)), to_, limits, ray_);
-    std::vector<Pass>& passes = at->second.passes;
-    passes.reserve(ray_.legs.size());
-    for (const LegPass& leg : ray_.legs) {
+    tracer_.trace(from_, direction(azimuth(column), elevation(row)), to_, limits, ray);
+    std::vector<Pass> found;
+    found.reserve(ray.legs.size());
+    for (const LegPass& leg : ray.legs) {
       Pass pass{.key = leg.history.key,
                 .facets = leg.history.facets,
                 .miss = leg.state.x - to_,
@@ -299,9 +344,9 @@ class Mesh {
       const double size = pass.x_launch.norm();
       const double off = (pass.miss - pass.tangent * pass.tangent.dot(pass.miss)).norm();
       pass.least = size > 0.0 ? off / size : infinity;
-      passes.push_back(pass);
+      found.push_back(pass);
     }
-    return at->second;
+    return found;
   }
 
   void look(const Cell& cell) {
@@ -529,8 +574,9 @@ class Mesh {
   Refinement refine_;
   double slope_ = 0.0, by_water_ = 0.0, slowing_ = 1.0;  // for turn()
   int border_cuts_ = 0;
-  int rows_ = 0, columns_ = 0;
-  double d_elevation_ = 0.0, d_azimuth_ = 0.0;
+  std::vector<double> rows_;  // elevations between which cells lie [rad]
+  int columns_ = 0;
+  double d_azimuth_ = 0.0, coarse_ = coarse;
   std::unordered_map<std::uint64_t, Vertex> vertices_;
   VolumeRay ray_;
   std::vector<Root> roots_;

@@ -34,8 +34,7 @@ struct VolumeSearchReport {
                                         VolumeSearchReport* report = nullptr);
 
 /// The same path after its ends have moved by metres. Null if no ray of the same history is found
-/// there: then it has to be searched for. \param bearing_change  by how much the line between the
-/// ends has turned since [rad] is taken care of: deflections count from that line
+/// there: then it has to be searched for.
 [[nodiscard]] std::optional<Arrival> followed_volume_path(const VolumeTracer& tracer,
                                                           const Arrival& path, const Vec3& from,
                                                           const Vec3& to);

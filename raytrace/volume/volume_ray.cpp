@@ -299,6 +299,7 @@ class VolumeTracer::Run {
     s_ = drawn_out(from, end, c);
     s_.nepers = from.nepers + absorbed(from.x.z(), s_.x.z(), end / c);
     history_.caustics += tube_folds(from.x_launch, from.p_launch, v * c, end);
+    if (with_track_) out_.track.push_back(s_.x);
     return at_event(met);
   }
 
@@ -630,7 +631,6 @@ class VolumeTracer::Run {
     out_.bounces.push_back({.boundary = kind,
                             .grazing = grazing,
                             .range = std::hypot(s_.x.x() - source_.x(), s_.x.y() - source_.y())});
-    if (with_track_ && cell_.uniform) out_.track.push_back(s_.x);
     history_.key = bounced_key(history_.key, kind);
     cell_ = ocean_.water_cell(s_.x, s_.p);
     if (limits_.losses && !lose(kind, grazing, c)) return false;

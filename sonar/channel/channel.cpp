@@ -128,7 +128,7 @@ class Sounding {
                         .amplitude = received.amplitude,
                         .launch = path.launch_elevation,
                         .arrival = path.arrival_elevation,
-                        .bearing = met.way.leg.bearing,
+                        .bearing = arrival_bearing(path, met.way.leg.bearing),
                         .length = path.path_length};
     }
     return found;

@@ -40,8 +40,8 @@ std::optional<DelayCurve> curve_of(const EchoContext& context, const Kinematics&
         .struck = then.time,
         .received = then.time,
         .at_array = met_by(then.way.end.velocity,
-                           slowness_vector(then.way.leg.bearing, then.path.arrival_elevation,
-                                           context.paths.speed_at(then.way.end.position)))};
+                           arriving_slowness(then.way.leg.bearing, then.path,
+                                             context.paths.speed_at(then.way.end.position)))};
   };
   // Turns that the pulse can meet: it is nowhere longer than 1.5 T.
   const auto near = [&](std::vector<double> course_changes, double from) {

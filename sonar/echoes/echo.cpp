@@ -207,8 +207,7 @@ class EchoFinder {
         (context_.listens && !std::all_of(home.begin(), home.end(), [&](const Arrival& path) {
            const Return received_there{
                .delay = there.front().delay + path.delay,
-               .slowness = met_by(back.end.velocity,
-                                  slowness_vector(back.leg.bearing, path.arrival_elevation, c))};
+               .slowness = met_by(back.end.velocity, arriving_slowness(back.leg.bearing, path, c))};
            return is_plane_wave(context_, received_there, path.path_length);
          }));
     return many;
@@ -247,7 +246,8 @@ class EchoFinder {
       return found;
     };
     const auto outward = ordered(there, [&](const Arrival& path) {
-      return power(path) * std::norm(context_.pattern.towards(out.bearing, path.launch_elevation));
+      return power(path) * std::norm(context_.pattern.towards(launch_bearing(path, out.bearing),
+                                                              path.launch_elevation));
     });
     const auto homeward = ordered(home, power);
     using Best = std::tuple<double, std::size_t, std::size_t>;  // power; row, place in it
@@ -302,9 +302,10 @@ class EchoFinder {
         one.curve.reset();
         one.received.delay += part.delay;
         one.received.doppler *= 1.0 + part.shift / context_.frequency;
-        one.received.slowness = met_by(pair.home.way.end.velocity,
-                                       slowness_vector(pair.home.way.leg.bearing + part.bearing,
-                                                       home.arrival_elevation + part.elevation, c));
+        one.received.slowness =
+            met_by(pair.home.way.end.velocity,
+                   slowness_vector(arrival_bearing(home, pair.home.way.leg.bearing) + part.bearing,
+                                   home.arrival_elevation + part.elevation, c));
         one.response.without_pattern = pressure * part.amplitude * of_glint;
         one.received.amplitude = one.response.without_pattern * pattern;
         one.level_db = source_level_db() + db_from_amplitude(std::abs(one.received.amplitude));
@@ -331,10 +332,10 @@ class EchoFinder {
     const double c_source = speed(pair.source), c_target = speed(pair.target),
                  c_phone = speed(pair.home.way.end);
     const double there = pair.there.way.leg.bearing, home = pair.home.way.leg.bearing;
-    return {.at_source = slowness_vector(there, pair.there.path.launch_elevation, c_source),
-            .into_target = slowness_vector(there, pair.there.path.arrival_elevation, c_target),
-            .out_of_target = slowness_vector(home, pair.home.path.launch_elevation, c_target),
-            .at_phone = slowness_vector(home, pair.home.path.arrival_elevation, c_phone)};
+    return {.at_source = leaving_slowness(there, pair.there.path, c_source),
+            .into_target = arriving_slowness(there, pair.there.path, c_target),
+            .out_of_target = leaving_slowness(home, pair.home.path, c_target),
+            .at_phone = arriving_slowness(home, pair.home.path, c_phone)};
   }
 
   Vec3 lag_of(const TwoWayPaths& pair) const {
@@ -362,7 +363,8 @@ class EchoFinder {
         echo_doppler({pair.source.velocity, at_source}, {pair.target.velocity, into_target},
                      {pair.target.velocity, out_of_target}, {phone.velocity, at_phone});
     echo.received.slowness = met_by(phone.velocity, at_phone);
-    const double bearing = pair.there.way.leg.bearing, elevation = pair.there.path.launch_elevation;
+    const double bearing = launch_bearing(pair.there.path, pair.there.way.leg.bearing),
+                 elevation = pair.there.path.launch_elevation;
     const std::complex<double> crossed = pair.there.path.amplitude * pair.home.path.amplitude;
     const std::complex<double> towards = context_.pattern.towards(bearing, elevation);
     const std::complex<double> carried = crossed * towards;

@@ -12,9 +12,9 @@ namespace asdic::detail {
 EchoPath received_along(const EchoContext& context, const Kinematics& sender, const MetPath& met) {
   const double c_sender = context.paths.speed_at(sender.position);
   const double c_array = context.paths.speed_at(met.way.end.position);
-  const double bearing = met.way.leg.bearing;
-  const Vec3 leaving = slowness_vector(bearing, met.path.launch_elevation, c_sender);
-  const Vec3 at_array = slowness_vector(bearing, met.path.arrival_elevation, c_array);
+  const double line = met.way.leg.bearing, bearing = launch_bearing(met.path, line);
+  const Vec3 leaving = leaving_slowness(line, met.path, c_sender);
+  const Vec3 at_array = arriving_slowness(line, met.path, c_array);
   EchoPath path;
   path.target = -1;
   path.array = context.array;
@@ -47,8 +47,9 @@ void scatter_along(const EchoContext& context, const Kinematics& sender, double 
     one.received.delay += part.delay;
     one.received.doppler *= 1.0 + part.shift / context.frequency;
     one.received.slowness =
-        met_by(met.way.end.velocity, slowness_vector(met.way.leg.bearing + part.bearing,
-                                                     path.arrival_elevation + part.elevation, c));
+        met_by(met.way.end.velocity,
+               slowness_vector(arrival_bearing(path, met.way.leg.bearing) + part.bearing,
+                               path.arrival_elevation + part.elevation, c));
     one.response.without_pattern = std::sqrt(path.scattered) * part.amplitude;
     one.received.amplitude = one.response.without_pattern *
                              context.pattern.towards(one.response.bearing, one.response.elevation);

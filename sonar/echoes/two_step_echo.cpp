@@ -118,9 +118,9 @@ class MovingLeg {
     for (const Arrival& path : known_) {
       const MetPath met =
           moving_.meet(from.position, sent, receiver_.track, receiver_.offset, way, path);
-      const Vec3 out = slowness_vector(met.way.leg.bearing, met.path.launch_elevation, c),
-                 at_receiver = slowness_vector(met.way.leg.bearing, met.path.arrival_elevation,
-                                               context_.paths.speed_at(met.way.end.position));
+      const Vec3 out = leaving_slowness(met.way.leg.bearing, met.path, c),
+                 at_receiver = arriving_slowness(met.way.leg.bearing, met.path,
+                                                 context_.paths.speed_at(met.way.end.position));
       const Vec3 lag = BodyLag{.out = out,
                                .at_phone = at_receiver,
                                .body_velocity = from.velocity,

@@ -127,8 +127,8 @@ std::vector<Interference::Received> Interference::received_at(const Interferer& 
       at_frequencies.push_back(paths_.find(source.position, receiver.position, f, limits));
   std::vector<Received> received;
   for (const Arrival& path : found) {
-    const Vec3 leaving = slowness_vector(way.bearing, path.launch_elevation, c_source);
-    const Vec3 arriving = slowness_vector(way.bearing, path.arrival_elevation, c_array);
+    const Vec3 leaving = leaving_slowness(way.bearing, path, c_source);
+    const Vec3 arriving = arriving_slowness(way.bearing, path, c_array);
     // Left when the ship was v·(t_e − left) further on: τ = τ₀ − s·v(t_e − left), t_e = t − τ.
     const double along = leaving.dot(source.velocity);
     const double delay = (path.delay - along * (time - left)) / (1.0 - along);
@@ -202,9 +202,9 @@ void Interference::add_parts(const Received* one, const Received* other, std::in
         std::polar(1.0 / std::sqrt(double(received.parts.size())), phase);
     into.delay[side] = received.path.delay + part.delay;
     into.length[side] = received.path.path.path_length;
-    into.moveout[side] = slowness_vector(received.path.bearing + part.bearing,
-                                         received.path.path.arrival_elevation + part.elevation,
-                                         1.0 / received.path.moveout.norm());
+    into.moveout[side] = slowness_vector(
+        arrival_bearing(received.path.path, received.path.bearing) + part.bearing,
+        received.path.path.arrival_elevation + part.elevation, 1.0 / received.path.moveout.norm());
     into.amplitude[side] = std::sqrt(received.path.path.scattered) * weight;
     for (const double root : received.scattered_band) into.band[side].push_back(root * weight);
   };

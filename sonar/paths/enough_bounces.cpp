@@ -136,7 +136,7 @@ Bounces enough_bounces(const PropagationPaths& paths, const PropagationSettings&
   return search_bounces(settings, search, [&](PathLimits limits, ReceivedBounces& received) {
     limits.max_delay = latest;
     limits.diffraction = false;  // it has no bounces
-    for (const Arrival& a : paths.find(from, to, frequency, limits))
+    for (const Arrival& a : paths.find_in_plane(from, to, frequency, limits))
       received.add(a.delay, a.surface_bounces, a.bottom_bounces,
                    std::norm(a.amplitude) + a.scattered);
   });

@@ -22,6 +22,14 @@ Vec3 slowness_vector(double bearing, double elevation, double sound_speed) {
   return direction(bearing, elevation) / sound_speed;
 }
 
+Vec3 leaving_slowness(double line, const Arrival& path, double sound_speed) {
+  return slowness_vector(launch_bearing(path, line), path.launch_elevation, sound_speed);
+}
+
+Vec3 arriving_slowness(double line, const Arrival& path, double sound_speed) {
+  return slowness_vector(arrival_bearing(path, line), path.arrival_elevation, sound_speed);
+}
+
 const Arrival* same_path(const Arrivals& arrivals, const Arrival& path, bool layered) {
   constexpr double near = radians(1.0);
   const double near_level = 1.0 - std::cos(2.0 * near);  // Δξ/ξ of a level ray turned by that
@@ -33,7 +41,9 @@ const Arrival* same_path(const Arrivals& arrivals, const Arrival& path, bool lay
         a.surface_bounces != path.surface_bounces || a.bottom_bounces != path.bottom_bounces ||
         a.upper_turns != path.upper_turns || a.lower_turns != path.lower_turns)
       continue;
-    const double turned = std::abs(a.launch_elevation - path.launch_elevation);
+    const double aside = std::remainder(a.launch_deflection - path.launch_deflection, 2.0 * pi) *
+                         std::cos(path.launch_elevation);
+    const double turned = std::hypot(a.launch_elevation - path.launch_elevation, aside);
     const double changed =  // of ξ, over ξ; straight up and down there is none
         std::abs(a.horizontal_slowness - path.horizontal_slowness) /
         std::max(path.horizontal_slowness, std::numeric_limits<double>::min());
@@ -84,8 +94,8 @@ Way MovingPaths::way(const Vec3& from, double start, const Track& track, const V
     const double time = known.empty()
                             ? start + first.delay
                             : arrival_time(way, start, first,
-                                           slowness_vector(way.leg.bearing, first.arrival_elevation,
-                                                           paths_.speed_at(way.end.position)));
+                                           arriving_slowness(way.leg.bearing, first,
+                                                             paths_.speed_at(way.end.position)));
     if (std::abs(time - way.reference_time) < 1e-9) break;
     const Kinematics then = place(track, offset, time);
     if (then.position == way.end.position) {
@@ -122,8 +132,8 @@ MetPath MovingPaths::meet(const Vec3& from, double start, const Track& track, co
               .path = path};
   for (int i = 0; i < 4; ++i) {
     const double c = paths_.speed_at(met.way.end.position);
-    met.time = arrival_time(met.way, start, met.path,
-                            slowness_vector(met.way.leg.bearing, met.path.arrival_elevation, c));
+    met.time =
+        arrival_time(met.way, start, met.path, arriving_slowness(met.way.leg.bearing, met.path, c));
     const Kinematics then = place(track, offset, met.time);
     const double moved = (then.position - met.way.end.position).norm();
     if (settled(moved, c, std::max(met.way.leg.range, moved))) break;

@@ -10,6 +10,11 @@ namespace asdic::detail {
 /// Unit vector of travel over the local speed of sound [s/m].
 [[nodiscard]] Vec3 slowness_vector(double bearing, double elevation, double sound_speed);
 
+/// The same of a path as it leaves and as it arrives. \param line  bearing of the straight line
+/// between its ends [rad]
+[[nodiscard]] Vec3 leaving_slowness(double line, const Arrival& path, double sound_speed);
+[[nodiscard]] Vec3 arriving_slowness(double line, const Arrival& path, double sound_speed);
+
 /// How much later the echo of a moving body's point at x is received than that of its reference
 /// point, as a vector a: a·x, fronts being plane. The front that passes the reference point with
 /// the slowness s_in meets the point δ = s_in·x/(1 − s_in·v_T) later, v_T·δ farther on; what that
@@ -43,7 +48,8 @@ struct MetPath {
   double time = 0.0;  ///< of arrival, since the start of the ping [s]
 };
 
-/// The same path after its ends have moved by metres: same history, and launched within a degree.
+/// The same path after its ends have moved by metres: same history, and launched within a degree
+/// of what it was, against the line between the ends.
 ///
 /// In a layered ocean of those the nearest horizontal slowness ξ = cos θ/c, which the ray keeps, or
 /// one that is as near as that of level rays two degrees apart: a ray that leaves almost level

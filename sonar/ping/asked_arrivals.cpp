@@ -61,8 +61,9 @@ Leg leg_to(const PingSimulator& simulator, int ping, const AskedReceiver& receiv
   const PathLimits limits = limits_of(
       scenario.propagation,
       enough_bounces(paths, scenario.propagation, source, end, frequency, end_of_record(scenario)));
-  leg.arrivals = paths.layered() ? paths.find(source, end, frequency, limits)
-                                 : plane->find(from, to, receiver.range, frequency, limits);
+  leg.arrivals = paths.layered() || paths.volume()
+                     ? paths.find(source, end, frequency, limits)
+                     : plane->find(from, to, receiver.range, frequency, limits);
   return leg;
 }
 

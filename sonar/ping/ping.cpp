@@ -36,10 +36,12 @@ constexpr std::size_t most_patch_rows = 2000;
 
 std::shared_ptr<const PropagationPaths> paths_of(const Scenario& scenario,
                                                  SharedPropagation* shared, bool& known) {
+  const int dimension = scenario.propagation.dimension;
   if (shared != nullptr)
-    return shared->paths(scenario.environment, scenario.transect, scenario.area, &known);
-  return std::make_shared<const PropagationPaths>(scenario.environment, scenario.transect,
-                                                  scenario.area);
+    return shared->paths(scenario.environment, scenario.transect, scenario.area, &known, dimension);
+  return std::make_shared<const PropagationPaths>(
+      scenario.environment, scenario.transect, scenario.area, nullptr,
+      volume_of(scenario.environment, scenario.transect, scenario.area, dimension));
 }
 
 double end_of(const Recording& recording) {

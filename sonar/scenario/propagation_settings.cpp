@@ -18,6 +18,9 @@ constexpr std::span<const std::string_view> words(BandOfLosses /*any*/) {
 }  // namespace
 
 void PropagationSettings::describe(Fields& field) {
+  field(
+      "dimension", dimension, 2, 3,
+      "2: rays keep to the vertical plane through both places; 3: they are turned out of it, too");
   field(or_word("max_surface_bounces", "auto"), max_surface_bounces, 0, 1000,
         "of a path; auto: as many as there is sound in");
   field(or_word("max_bottom_bounces", "auto"), max_bottom_bounces, 0, 1000,

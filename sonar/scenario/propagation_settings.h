@@ -9,6 +9,7 @@ class Fields;
 
 /// What is searched for. A path is kept when it is within all the limits.
 struct PropagationSettings {
+  int dimension = 2;  ///< 2: rays keep to vertical planes; 3: floors and fronts turn them sideways
   /// None ("auto"): as many as there is sound in, sonar/paths/enough_bounces.h.
   std::optional<int> max_surface_bounces = {};
   std::optional<int> max_bottom_bounces = {};

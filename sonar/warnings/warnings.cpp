@@ -364,6 +364,18 @@ std::string scattering_energy(const Scenario& scenario) {
   return text;
 }
 
+std::string planes_beside_volume(const Scenario& scenario) {
+  if (scenario.propagation.dimension != 3 || (!scenario.area && is_layered(scenario.environment)))
+    return "";
+  std::string text =
+      "propagation.dimension: echoes, direct sound and ships' noise are turned sideways by floor "
+      "and water; ";
+  if (scenario.reverberation.enabled) text += "reverberation keeps to vertical planes, and so do ";
+  return text + "the numbers of bounces that \"auto\" finds and the places that a receiver " +
+         "makes of bearings" + (scenario.reverberation.enabled ? "" : " keep to vertical planes") +
+         "; waves where no ray goes are left out";
+}
+
 }  // namespace asdic::detail::checks
 
 namespace asdic::detail {
@@ -375,7 +387,8 @@ std::vector<std::string> warnings(const Scenario& scenario) {
                 checks::noise_table_band(scenario), checks::surface_scattering_range(scenario),
                 checks::reverberation_plane_waves(scenario), checks::noise_of_a_bent_line(scenario),
                 checks::noise_from_below(scenario), checks::left_out_diffraction(scenario),
-                checks::beyond_the_map(scenario), checks::scattering_energy(scenario)},
+                checks::beyond_the_map(scenario), checks::scattering_energy(scenario),
+                checks::planes_beside_volume(scenario)},
                all);
   return all;
 }

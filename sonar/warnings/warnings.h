@@ -30,6 +30,8 @@ namespace checks {
 [[nodiscard]] std::string noise_of_a_bent_line(const Scenario& scenario);
 /// Noise of sources at the surface, over a bottom that reflects it.
 [[nodiscard]] std::string noise_from_below(const Scenario& scenario);
+/// Rays in three dimensions, and what stays in vertical planes beside them.
+[[nodiscard]] std::string planes_beside_volume(const Scenario& scenario);
 /// Targets, and an ocean or a range for which sound where no ray goes is not computed.
 [[nodiscard]] std::string left_out_diffraction(const Scenario& scenario);
 /// Sound that is heard from beyond an area's maps: there their edges go on.

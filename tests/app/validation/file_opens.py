@@ -58,7 +58,8 @@ TIMES = {"time": "sample", "replica_time": "replica_sample", "levels/level_time"
 TABLES = {
     "arrivals":
         "ping leg target channel path bearing_deg range launch_elevation_deg "
-        "arrival_elevation_deg delay amplitude_real amplitude_imag spreading_db "
+        "arrival_elevation_deg launch_deflection_deg arrival_deflection_deg delay amplitude_real "
+        "amplitude_imag spreading_db "
         "absorption_db scattered path_length surface_bounces bottom_bounces upper_turns "
         "lower_turns caustics first_bounce bounce_count",
     "bounces":
@@ -193,7 +194,7 @@ def check_attributes(f, check):
                 check.that(name in f[place].attrs, f"{place}: no attribute {name}")
     check.that(text(f.attrs.get("filetype", "")) == "asdic ping",
                f"filetype {f.attrs.get('filetype')!r}")
-    check.that(text(f.attrs.get("version", "")) == "3.0", f"version {f.attrs.get('version')!r}")
+    check.that(text(f.attrs.get("version", "")) == "3.1", f"version {f.attrs.get('version')!r}")
     check.that(re.fullmatch(r"[0-9a-f]{64}", text(f.attrs.get("scenario_sha256", ""))),
                "scenario_sha256: not 64 hexadecimal digits")
     if "scenario" in f:

@@ -159,7 +159,7 @@ TEST(PingFile, VersionsOneToThreeAreRead) {
   writer.append(small_record(scenario, 1));
   writer.finish(true);
   for (const auto& [version, good] : {std::pair{"1.0", true}, std::pair{"2.7", true},
-                                      std::pair{"3.0", true}, std::pair{"4.0", false}}) {
+                                      std::pair{"3.1", true}, std::pair{"4.0", false}}) {
     {
       Hdf5File file = Hdf5File::edit(path);
       file.set_attribute("", "version", version);

@@ -46,7 +46,19 @@ TEST(Places, AFathometerIsReceivedOverLevelGroundOnly) {
   EXPECT_TRUE(small_scenario({"propagation.fathometer=true"}).propagation.fathometer);
   EXPECT_EQ(fault(hill({"propagation.fathometer=true"})),
             "--set propagation.fathometer: found true, expected false where the ocean varies along "
-            "a transect: a mirror that slopes is not in the plane of transmitter and array");
+            "a transect, or propagation.dimension = 3: a mirror that slopes is not in the plane of "
+            "transmitter and array");
+  EXPECT_EQ(fault(hill({"propagation.fathometer=true", "propagation.dimension=3"})), "good");
+}
+
+// Rays in three dimensions know a flat surface only.
+TEST(Places, ThreeDimensionsRefuseASurfaceThatIsNotFlat) {
+  const std::string swell = "environment.surface={shape={range=[0, 100, 200], depth=[0, 1, 0]}}";
+  EXPECT_EQ(fault(hill({swell})), "good");
+  EXPECT_EQ(
+      fault(hill({swell, "propagation.dimension=3"})),
+      "--set propagation.dimension: found 3, expected 2: rays in three dimensions know a flat "
+      "surface only, and environment.surface has a shape");
 }
 
 // A straight track over the top, in 70 m of water at both ends.
