@@ -26,7 +26,7 @@ constexpr double bent_mesh = 1.5;          // and elsewhere, twice that of steep
 constexpr double flat_rays = 30.0;         // those that may turn in the water [deg]
 constexpr int cuts = 7;                    // a cell is cut in halves so often, each way
 constexpr int cuts_of_borders = 3;         // the same where families part, in uniform water
-constexpr int cuts_of_bent_borders = 1;    // and elsewhere
+constexpr int cuts_of_bent_borders = 0;    // and elsewhere
 constexpr std::size_t most_rays = 100000;  // of a mesh
 
 double wrapped(double angle) noexcept { return std::remainder(angle, 2.0 * pi); }
@@ -205,6 +205,7 @@ class Mesh {
     if (ocean.sideways_bending() > 0.0) by_water_ = ocean.sideways_bending() * longest_ * c;
     const bool uniform = cell.uniform && cell.walls == 0;
     const double mesh = radians(uniform ? uniform_mesh : bent_mesh);
+    bent_ = !uniform;
     border_cuts_ = uniform ? cuts_of_borders : cuts_of_bent_borders;
     slowing_ = uniform ? 1.0 : 0.94;
     // Never quite at a pole, where directions have no azimuth.
@@ -225,6 +226,7 @@ class Mesh {
   }
 
   Arrivals search() {
+    if (bent_ && turn(0.0) > 0.2) measure_turns();
     trace_corners();
     for (int row = 0; row + 1 < int(rows_.size()); ++row) {
       const int columns = columns_of(row);
@@ -282,11 +284,44 @@ class Mesh {
     const double steepest =
         std::max(std::abs(rows_[std::size_t(row)]), std::abs(rows_[std::size_t(row) + 1]));
     const double cosine = std::cos(steepest), most = turn(steepest);
-    const double reach = most >= cosine ? pi : std::asin(most / cosine);
+    double reach = most >= cosine ? pi : std::asin(most / cosine);
+    if (!turns_.empty())
+      reach =
+          std::min(reach, 2.0 * std::max(turns_[std::size_t(row)], turns_[std::size_t(row) + 1]) +
+                              radians(6.0));
     return std::clamp(int(std::ceil(reach / d_azimuth_ + 1e-9)), 1, columns_);
   }
   [[nodiscard]] double azimuth(int column) const noexcept {
     return bearing_ + double(column) / double(1 << cuts) * d_azimuth_;
+  }
+
+  /// How far the rays of a coarse ring turn, row by row: where water bends rays the bound above
+  /// costs too many of them.
+  void measure_turns() {
+    constexpr int directions = 24;
+    std::vector<double> turned(rows_.size() * directions);
+    in_parallel_chunks(turned.size(), directions, [&](std::size_t begin, std::size_t end) {
+      VolumeRay ray;
+      for (std::size_t i = begin; i < end; ++i) {
+        const double e = rows_[i / directions],
+                     a = bearing_ + 2.0 * pi * double(i % directions) / directions;
+        tracer_.trace(from_, direction(a, e), to_, mesh_limits(), ray);
+        turned[i] = ray.turned;
+      }
+    });
+    for (std::size_t row = 0; row < rows_.size(); ++row)
+      turns_.push_back(*std::max_element(turned.begin() + std::ptrdiff_t(row * directions),
+                                         turned.begin() + std::ptrdiff_t((row + 1) * directions)));
+    report_.rays += turned.size();
+  }
+
+  [[nodiscard]] VolumeLimits mesh_limits() const noexcept {
+    return {.max_surface_bounces = limits_.max_surface_bounces,
+            .max_bottom_bounces = limits_.max_bottom_bounces,
+            .longest = longest_,
+            .faintest = limits_.faintest,
+            .tolerance = coarse_,
+            .losses = limits_.faintest > 0.0};
   }
 
   /// The rays of all cells before any is cut, many at a time.
@@ -326,13 +361,7 @@ class Mesh {
   }
 
   [[nodiscard]] std::vector<Pass> passes(int row, int column, VolumeRay& ray) const {
-    const VolumeLimits limits{.max_surface_bounces = limits_.max_surface_bounces,
-                              .max_bottom_bounces = limits_.max_bottom_bounces,
-                              .longest = longest_,
-                              .faintest = limits_.faintest,
-                              .tolerance = coarse_,
-                              .losses = limits_.faintest > 0.0};
-    tracer_.trace(from_, direction(azimuth(column), elevation(row)), to_, limits, ray);
+    tracer_.trace(from_, direction(azimuth(column), elevation(row)), to_, mesh_limits(), ray);
     std::vector<Pass> found;
     found.reserve(ray.legs.size());
     for (const LegPass& leg : ray.legs) {
@@ -553,15 +582,24 @@ class Mesh {
     });
   }
 
+  /// Whether two directions are one root: the turn between them moves the ray by less than both
+  /// misses may be.
+  static bool same(const Root& a, const Root& b) {
+    if (a.pass.history.caustics != b.pass.history.caustics) return false;
+    const Vec3 between = b.direction - a.direction;
+    const Mat32 basis = launch_basis(a.direction);
+    const Vec3 t = a.pass.state.p.normalized(),
+               moved = a.pass.state.x_launch.col(0) * Vec3(basis.col(0)).dot(between) +
+                       a.pass.state.x_launch.col(1) * Vec3(basis.col(1)).dot(between);
+    return (moved - t * t.dot(moved)).norm() < 5.0 * acceptable && between.norm() < 1e-2;
+  }
+
   bool try_root(const Vec3& start, std::size_t leg, std::uint64_t key, double cell) {
     if (known(start, key, 0.05 * cell)) return true;
     const auto root = refine_(start, leg, key, 2.0 * cell, report_.refined);
     if (!root) return false;
-    const double same = std::max(1e-7, 1e-3 / std::max(1.0, root->pass.state.x_launch.norm()));
     for (const Root& r : roots_)
-      if (r.pass.history.key == key && (r.direction - root->direction).norm() < same &&
-          std::abs(r.pass.state.time - root->pass.state.time) < 1e-7)
-        return true;
+      if (r.pass.history.key == key && same(r, *root)) return true;
     roots_.push_back(*root);
     return true;
   }
@@ -574,7 +612,9 @@ class Mesh {
   Refinement refine_;
   double slope_ = 0.0, by_water_ = 0.0, slowing_ = 1.0;  // for turn()
   int border_cuts_ = 0;
-  std::vector<double> rows_;  // elevations between which cells lie [rad]
+  bool bent_ = false;
+  std::vector<double> turns_;  // of rays of a row, at most, by a coarse ring [rad]
+  std::vector<double> rows_;   // elevations between which cells lie [rad]
   int columns_ = 0;
   double d_azimuth_ = 0.0, coarse_ = coarse;
   std::unordered_map<std::uint64_t, Vertex> vertices_;

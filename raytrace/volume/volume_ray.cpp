@@ -162,12 +162,14 @@ class VolumeTracer::Run {
     out_.legs.clear();
     out_.bounces.clear();
     out_.track.clear();
+    out_.turned = 0.0;
     source_ = from;
     cell_ = ocean_.water_cell(from, direction);
     const double c = ocean_.speed(from, cell_.index).c;
     out_.source_speed = c;
     s_.x = from;
     s_.p = direction / c;
+    first_ = Vec2(direction.x(), direction.y());
     s_.p_launch = launch_basis(direction) / c;
     if (with_track_) out_.track.push_back(from);
     begin_leg();
@@ -231,8 +233,15 @@ class VolumeTracer::Run {
     return s;
   }
 
+  void note_bearing() {
+    const double along = first_.x() * s_.p.x() + first_.y() * s_.p.y(),
+                 aside = first_.x() * s_.p.y() - first_.y() * s_.p.x();
+    out_.turned = std::max(out_.turned, std::abs(std::atan2(aside, along)));
+  }
+
   /// The leg is whole: where it never came closest it is drawn out beyond its ends.
   void end_leg() {
+    note_bearing();
     if (!passed_) {
       const bool behind = closing(leg_begin_.x, leg_begin_.p) < 0.0;
       const VolumeState& end = behind ? leg_begin_ : s_;
@@ -420,28 +429,36 @@ class VolumeTracer::Run {
     const double c = 1.0 / s_.p.norm();
     if (step_ <= 0.0) step_ = 50.0 / c;
     double h = std::min(step_, (limits_.longest - s_.length) / c * 1.0001 + 1e-9);
+    const Wall ahead = wall_ahead(k1);
+    const bool to_wall = ahead.time < h;
+    if (to_wall) h = ahead.time;
     RayVector end, k7;
     for (int i = 0; i < 60; ++i) {
       double error = 0.0;
       end = stepped(y, k1, h, &error, &k7);
       const double factor = error > 0.0 ? 0.9 * std::pow(error, -0.2) : 5.0;
       if (error <= 1.0) {
-        step_ = h * std::clamp(factor, 0.3, 5.0);
+        const double next = h * std::clamp(factor, 0.3, 5.0);
+        if (!to_wall || i > 0 || next < step_) step_ = next;
         break;
       }
       h *= std::clamp(factor, 0.1, 0.9);
     }
     const StepChord chord{y.segment<3>(0), h * k1.segment<3>(0), end.segment<3>(0),
                           h * k7.segment<3>(0)};
-    const Met met = first_met(chord);
+    Met met = first_met(chord);
+    if (to_wall && (met.event == Event::none || met.event == Event::wall) &&
+        std::abs(ahead.offset - ahead.normal.dot(chord.b)) < on_wall())
+      met = {Event::wall, 1.0, ahead.normal};  // where it was aimed at
     double part = 1.0;
     RayVector now = end;
-    if (met.event != Event::none) {
+    if (met.event != Event::none && met.at < 1.0) {
       part = met.at;
       now = stepped(y, k1, part * h, nullptr, nullptr);
       for (int i = 0; i < 3; ++i) {  // onto the boundary itself
         const auto [room, slope] = room_of(met, now.segment<3>(0), rate(now).segment<3>(0));
-        if (slope == 0.0 || std::abs(room) < touching_boundary) break;
+        const double near = met.event == Event::wall ? on_wall() : touching_boundary;
+        if (slope == 0.0 || std::abs(room) < near) break;
         part = std::clamp(part - room / slope / h, 0.0, 1.0);
         now = stepped(y, k1, part * h, nullptr, nullptr);
       }
@@ -454,6 +471,40 @@ class VolumeTracer::Run {
     s_.p *= 1.0 / (s_.p.norm() * ocean_.speed(s_.x, cell_.index).c);
     if (with_track_) out_.track.push_back(s_.x);
     return at_event(met);
+  }
+
+  /// How near a wall counts as on it: the speed is the same on both sides.
+  [[nodiscard]] double on_wall() const noexcept { return std::max(1e-6, 0.1 * limits_.tolerance); }
+
+  struct Wall {
+    double time = infinity;  // to get there
+    Vec3 normal = Vec3::Zero();
+    double offset = 0.0;
+  };
+  /// The wall that a ray meets first, as it bends now: n·x + n·ẋ·t + ½n·ẍ·t² is there.
+  [[nodiscard]] Wall wall_ahead(const RayVector& rate_now) const {
+    Wall first;
+    const Vec3 v = rate_now.segment<3>(0), force = rate_now.segment<3>(3);
+    const double c2 = v.squaredNorm(), c = std::sqrt(c2);
+    // ẍ = 2c(∇c·ẋ)p + c²ṗ, ∇c = −c·ṗ, ẋ = c²p
+    const Vec3 a = c2 * force - (2.0 * c * c * force.dot(v) / c2) * v;
+    for (std::size_t i = 0; i < cell_.walls; ++i) {
+      const WaterSlab& slab = cell_.slabs[i];
+      const double at = slab.normal.dot(s_.x), vn = slab.normal.dot(v), an = slab.normal.dot(a);
+      for (const double offset : {slab.low, slab.high}) {
+        const double left = offset - at;
+        if (std::isinf(offset) || std::abs(left) < 2.0 * on_wall()) continue;
+        const double under = vn * vn + 2.0 * an * left;
+        if (under < 0.0) continue;
+        // 2·left/(vn ± √…): the sooner of the positive roots
+        const double root = std::sqrt(under);
+        for (const double below : {vn + root, vn - root}) {
+          const double t = below != 0.0 ? 2.0 * left / below : infinity;
+          if (t > 0.0 && t < first.time) first = {t, slab.normal, offset};
+        }
+      }
+    }
+    return first;
   }
 
   [[nodiscard]] std::pair<double, double> room_of(const Met& met, const Vec3& x,
@@ -626,6 +677,7 @@ class VolumeTracer::Run {
       s_.p_launch.col(k) = dp - force * later;
     }
     s_.p = out;
+    note_bearing();
     ++bounces;
     const double grazing = std::asin(std::clamp(-across * c, 0.0, 1.0));
     out_.bounces.push_back({.boundary = kind,
@@ -671,6 +723,7 @@ class VolumeTracer::Run {
   bool with_track_;
 
   Vec3 source_ = Vec3::Zero();
+  Vec2 first_ = Vec2::Zero();  // the launch direction on the map
   VolumeState s_, leg_begin_;
   VolumeHistory history_;
   WaterCell cell_;

@@ -63,6 +63,7 @@ struct VolumeLimits {
 /// A ray as its legs pass a receiver.
 struct VolumeRay {
   double source_speed = 0.0;  ///< [m/s]
+  double turned = 0.0;        ///< the most that its bearing differed from the first [rad]
   std::vector<LegPass> legs;  ///< leg i: after i bounces
   std::vector<Bounce> bounces;
   std::vector<Vec3> track;  ///< where asked for: places in order
