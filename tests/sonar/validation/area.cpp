@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "reverb/pairs/scattering_sheet.h"
+#include "sonar/paths/shared_propagation.h"
 #include "sonar/ping/run_pings.h"
 #include "sonar/reverberation/reverberation_fields.h"
 #include "support/map_of.h"
@@ -79,6 +80,32 @@ TEST(Area, ASlopeIsTheTransect) {
     SCOPED_TRACE(bearing);
     expect_alike(areas.find(from, to, 4000.0, some), transects.find(from, to, 4000.0, some), 1e-6,
                  0.05);
+  }
+}
+
+// In three dimensions, across the slope, where rays are turned sideways: the transect as a volume.
+TEST(Area, ASlopeInThreeDimensionsIsTheTransects) {
+  const Transect transect{.x = -200.0, .y = 100.0, .bearing = radians(30.0)};
+  Environment along = over_sand(summer(), 900.0);
+  along.bottom.shape = BoundaryShape(std::vector{-25e3, 25e3}, std::vector{1400.0, 400.0},
+                                     ShapeInterpolation::piecewise_linear);
+  const auto area = area_of(over_sand(summer(), 900.0), [&](double x, double y) {
+    return along.bottom.depth_at(transect.range_of(x, y));
+  });
+  const PropagationPaths transects(along, transect, nullptr, nullptr,
+                                   volume_of(along, transect, nullptr, 3)),
+      areas(along, transect, area, nullptr, volume_of(along, transect, area, 3));
+  ASSERT_NE(areas.volume(), nullptr);
+  for (const double bearing : {75.0, 120.0}) {
+    const Vec3 from(500.0, 1200.0, 150.0);
+    const Vec3 to = from + Vec3(6000.0 * std::sin(radians(bearing)),
+                                6000.0 * std::cos(radians(bearing)), -60.0);
+    SCOPED_TRACE(bearing);
+    const Arrivals found = areas.find(from, to, 4000.0, some);
+    expect_alike(found, transects.find(from, to, 4000.0, some), 1e-6, 0.05);
+    double sideways = 0.0;
+    for (const Arrival& a : found) sideways = std::max(sideways, std::abs(a.launch_deflection));
+    EXPECT_GT(sideways, 1e-3);
   }
 }
 
