@@ -138,6 +138,12 @@ RaysResult trace(const RaysOptions& options) {
   const bool asked = asks_for_rays(options.scenario.path, options.scenario.overrides);
   RaysResult result = read(options, asked);
   PropagationCase& run_case = result.run_case;
+  if (run_case.dimension == 3) {
+    tell(
+        "asdic: note: rays are drawn in their vertical plane; run.dimension = 3 is for arrivals "
+        "and fields");
+    run_case.dimension = 2;
+  }
   const bool fan_alone = options.has_fan() || options.bounces;
   if (asked && run_case.task != Task::rays && !fan_alone) {
     run_case.task = Task::eigenrays;

@@ -98,10 +98,8 @@ PropagationResult run_volume(const PropagationCase& run_case, const Progress& pr
 
   PropagationResult result;
   std::size_t unfinished = 0;
-  for (std::size_t i = 0; i < all; ++i) {
-    result.beams = std::max(result.beams, reports[i].rays);
-    if (reports[i].unfinished > 0) ++unfinished;
-  }
+  for (const VolumeSearchReport& report : reports)
+    if (report.unfinished > 0) ++unfinished;
   char text[320];
   std::snprintf(text, sizeof text,
                 "rays in three dimensions: %s of up to %d bounces off each boundary that keep at "

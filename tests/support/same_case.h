@@ -96,6 +96,8 @@ class CaseComparison {
     same("title", a.title, b.title);
     same("frequency", a.frequency, b.frequency);
     environment(a.environment, b.environment);
+    same("dimension", a.dimension, b.dimension);
+    same("off_transect", a.off_transect, b.off_transect);
     list("source depth", a.source_depths, b.source_depths);
     list("receiver depth", a.receivers.depths, b.receivers.depths);
     list("receiver range", a.receivers.ranges, b.receivers.ranges);

@@ -231,6 +231,8 @@ PropagationCase any_case() {
     }
   }
   run.beams = any_beams();
+  run.dimension = perhaps() ? 3 : 2;
+  if (perhaps()) run.off_transect = between(-3.0, 3.0);
   run.box_range = between(0.0, 2e5);
   run.box_depth = between(0.0, 2000.0);
   run.literal.step = between(0.0, 500.0);
@@ -260,6 +262,8 @@ RC_GTEST_PROP(ScenarioWriter, ReadsBackBitForBit, ()) {
   RC_ASSERT(to_toml(same) == text);
 
   RC_ASSERT(same.title == run.title);
+  RC_ASSERT(same.dimension == run.dimension);
+  RC_ASSERT(same.off_transect == run.off_transect);
   expect_same(same.source_depths, run.source_depths);
   expect_same(same.receivers.depths, run.receivers.depths);
   expect_same(same.receivers.ranges, run.receivers.ranges);

@@ -97,7 +97,8 @@ TEST(SonarSettings, PingsAndPathsAreKept) {
       expect_kept(pings);
     }
   expect_kept(PropagationSettings{});
-  expect_kept(PropagationSettings{.max_surface_bounces = 0,
+  expect_kept(PropagationSettings{.dimension = 3,
+                                  .max_surface_bounces = 0,
                                   .max_bottom_bounces = 5,
                                   .max_launch_angle = 0.3,
                                   .direct_blast = false,

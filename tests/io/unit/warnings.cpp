@@ -41,6 +41,21 @@ std::vector<std::string> tone(double frequency, std::vector<std::string> more) {
 
 TEST(Warnings, AnOrdinarySeaHasNone) { EXPECT_THAT(of({}), IsEmpty()); }
 
+// Over a slope, and not over a level floor.
+TEST(Warnings, WhatStaysInPlanesBesideThreeDimensions) {
+  const std::string slope =
+      "environment.bottom={kind=\"rigid\", shape={range=[0.0, 5000.0], depth=[1000.0, 1100.0], "
+      "interpolation=\"piecewise-linear\"}}";
+  const std::string three = "propagation.dimension=3";
+  EXPECT_THAT(of({three}), IsEmpty());
+  EXPECT_THAT(of({slope}), testing::Not(testing::Contains(HasSubstr("propagation.dimension"))));
+  EXPECT_THAT(of({slope, three}),
+              testing::Contains(HasSubstr("propagation.dimension: echoes, direct sound and ships' "
+                                          "noise are turned sideways")));
+  EXPECT_THAT(of({slope, three, "reverberation={enabled=true}"}),
+              testing::Contains(HasSubstr("reverberation keeps to vertical planes")));
+}
+
 TEST(Warnings, AProfileThatDoesNotCoverTheWater) {  // of 0 to 1000 m
   EXPECT_THAT(of({table(500.0, 600.0)}),
               ElementsAre(AllOf(HasSubstr("environment.sound_speed: levels from 500 to 600 m"),
