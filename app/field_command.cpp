@@ -68,7 +68,8 @@ int field(const FieldOptions& options) {
                    .path = options.scenario.path,
                    .text = read_text_file(options.scenario.path, "a scenario file"),
                    .overrides = options.scenario.overrides,
-                   .warnings = warnings};
+                   .warnings = warnings,
+                   .origin = result.run_case.origin};
   result.output = options.output.empty()
                       ? std::filesystem::path(options.scenario.path).stem().string() + ".h5"
                       : options.output;

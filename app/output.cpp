@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "io/files/digest.h"
+#include "io/hdf5/environment_group.h"
 #include "io/hdf5/scale.h"
 #include "io/ping/provenance.h"
 #include "io/result/result_file.h"
@@ -26,7 +27,8 @@ ResultOrigin origin_of(const Scenario& scenario) {
           .path = scenario.path,
           .text = scenario.text,
           .overrides = scenario.overrides,
-          .warnings = scenario.notes};
+          .warnings = scenario.notes,
+          .origin = scenario.origin};
 }
 
 void write_root(Hdf5File& file, const std::string& filetype, const ResultOrigin& origin) {
@@ -38,6 +40,7 @@ void write_root(Hdf5File& file, const std::string& filetype, const ResultOrigin&
   file.set_attribute("", "scenario_sha256", sha256(origin.text));
   if (!origin.overrides.empty()) file.set_attribute("", "overrides", origin.overrides);
   if (!origin.warnings.empty()) file.set_attribute("", "warnings", origin.warnings);
+  write_origin(file, attributes_of(origin.origin));
   file.write_text("scenario", origin.text);
   describe(file, "scenario", "the scenario file, verbatim");
 }

@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -13,6 +14,7 @@ struct ResultOrigin {
   std::string title{}, path{}, text{};
   std::vector<std::string> overrides{};
   std::vector<std::string> warnings{};  ///< that were told of it
+  std::optional<OceanOrigin> origin{};  ///< where it is on the Earth, if it says so
 };
 
 /// That a name does not end like a file of BELLHOP's of another kind (.arr .ray .shd), which would

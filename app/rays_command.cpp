@@ -97,7 +97,8 @@ RaysResult read(const RaysOptions& options, bool as_run) {
                    .path = options.scenario.path,
                    .text = read_text_file(options.scenario.path, "a scenario file"),
                    .overrides = options.scenario.overrides,
-                   .warnings = notes};
+                   .warnings = notes,
+                   .origin = result.run_case.origin};
   if (options.bearing) result.run_case.environment = plane_along(options, *options.bearing);
   std::vector<double>& sources = result.run_case.source_depths;
   if (options.depth)

@@ -43,7 +43,8 @@ RunArrivals find_run_arrivals(const ScenarioChoice& choice,
                 .path = choice.path,
                 .text = read_text_file(choice.path, "a scenario file"),
                 .overrides = overrides,
-                .warnings = warnings};
+                .warnings = warnings,
+                .origin = all.run_case.origin};
   ProgressBar bar("%", 100, true);
   try {
     until_interrupted([&] {

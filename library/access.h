@@ -1,6 +1,5 @@
 #pragma once
 #include <filesystem>
-#include <initializer_list>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -55,11 +54,11 @@ struct Access {
 
 /// An error of the project's as one of asdic/error.h. \param files  that it may be about
 [[nodiscard]] InputError shown(const detail::InputError& error,
-                               std::initializer_list<std::filesystem::path> files);
+                               const std::vector<std::filesystem::path>& files);
 
 /// Does work of the project's, whose errors leave as those of asdic/error.h.
 template <class Work>
-auto translated(const Work& work, std::initializer_list<std::filesystem::path> files = {}) {
+auto translated(const Work& work, const std::vector<std::filesystem::path>& files = {}) {
   try {
     return work();
   } catch (const detail::InputError& error) {

@@ -70,8 +70,7 @@ std::string InputError::key() const {
   return where_.starts_with(before) ? where_.substr(before.size()) : "";
 }
 
-InputError shown(const detail::InputError& error,
-                 std::initializer_list<std::filesystem::path> files) {
+InputError shown(const detail::InputError& error, const std::vector<std::filesystem::path>& files) {
   const detail::InputFault& fault = error.fault();
   for (const std::filesystem::path& path : files) {
     const std::string file = path.string();

@@ -2,123 +2,173 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <limits>
+#include <map>
 
 #include "core/error.h"
 #include "core/text.h"
 #include "core/units.h"
-#include "io/climatology/grids.h"
-#include "raytrace/ocean/seawater.h"
-#include "raytrace/ocean/sound_speed.h"
+#include "io/climatology/floor.h"
+#include "io/climatology/water.h"
+#include "io/climatology/wind.h"
 
 namespace asdic::detail {
-namespace {
 
-using namespace climatology;
-
-void read_wind(const std::filesystem::path& path, OceanSample& ocean) {
-  if (path.empty()) {
-    ocean.notes.push_back("no file of winds was named");
-    return;
-  }
-  const double x = ocean.longitude, y = ocean.latitude;
-  double speed = std::numeric_limits<double>::quiet_NaN();
-  const std::vector<std::string> names{"wind_speed", "WSPD", "windspeed"};
-  if (std::filesystem::exists(path) && !NetcdfGrid::find(path, names)) {
-    const NetcdfGrid east = require(path, {"eastward_wind", "UWND", "u10", "uas"}, "wind");
-    const NetcdfGrid north = require(path, {"northward_wind", "VWND", "v10", "vas"}, "wind");
-    const auto steps = time_steps(east, ocean.month, "the wind", ocean.notes);
-    speed = mean(steps, [&](std::size_t t) {
-      return std::hypot(east.bilinear(x, y, 0, t), north.bilinear(x, y, 0, t));
-    });
-    ocean.origins.push_back("wind: " + path.filename().string() + ", " + east.variable() + " and " +
-                            north.variable());
-    ocean.notes.push_back("the wind speed is that of mean components, less than the mean speed");
-  } else {
-    const NetcdfGrid grid = require(path, names, "wind");
-    const auto steps = time_steps(grid, ocean.month, "the wind", ocean.notes);
-    speed = mean(steps, [&](std::size_t t) { return grid.bilinear(x, y, 0, t); });
-    ocean.origins.push_back("wind: " + path.filename().string() + ", " + grid.variable());
-  }
-  if (std::isnan(speed))
-    ocean.notes.push_back("the wind is not known there");
-  else
-    ocean.wind_speed = speed;
+OceanOrigin OceanSample::origin() const {
+  return {.latitude = radians(latitude),
+          .longitude = radians(longitude),
+          .time = when.text(),
+          .sources = sources};
 }
 
-void read_profile(const std::filesystem::path& path, OceanSample& ocean) {
-  const Hydrography hydrography(path, ocean.month, ocean.notes);
-  const Column column = hydrography.at(ocean.latitude, ocean.longitude);
+namespace {
+
+using climatology::Floor;
+using climatology::Place;
+using climatology::Tiles;
+using climatology::Water;
+using climatology::WaterColumn;
+using climatology::Wind;
+
+void check_request(const OceanRequest& request) {
+  climatology::check_place(request.latitude, request.longitude);
+  if (const auto month = request.when.month; month && (*month < 1 || *month > 12))
+    throw InputError(
+        {.where = "month", .got = std::to_string(*month), .expected = "a month from 1 to 12"});
+  if (request.when.month && request.when.date)
+    throw InputError({.where = "month", .got = "a month and a date", .expected = "one of them"});
+}
+
+std::string named(const Tiles& tiles) {
+  std::string names = tiles.files()[0].path.filename().string();
+  if (tiles.files().size() > 1)
+    names += " and " + std::to_string(tiles.files().size() - 1) + " more";
+  return names + ", " + tiles.files()[0].variable;
+}
+
+/// Adds files to the sources of a sample, each digested once.
+class SourceList {
+ public:
+  explicit SourceList(OceanSample& ocean) : ocean_(ocean) {}
+
+  void add(const std::string& quantity, const std::vector<DataFile>& files,
+           const std::string& time) {
+    for (const DataFile& file : files) {
+      std::string& digest = digests_[file.path];
+      if (digest.empty()) digest = digest_of(file.path);
+      ocean_.sources.push_back({.quantity = quantity,
+                                .name = file.path.filename().string(),
+                                .variable = file.variable,
+                                .digest = digest,
+                                .time = time.starts_with("has ") ? "" : time});
+    }
+  }
+
+ private:
+  OceanSample& ocean_;
+  std::map<std::filesystem::path, std::string> digests_;
+};
+
+/// What is told of the time of a quantity; nothing where the data have none and none was asked for.
+void tell_time(const Tiles& tiles, const std::string& what, OceanSample& ocean) {
+  const auto& time = tiles.time_at(ocean.latitude, ocean.longitude);
+  if (time.fit == 3 && !ocean.when.month && !ocean.when.date) return;
+  ocean.notes.push_back(what + (time.said.starts_with("has ") ? " " : ": ") + time.said);
+}
+
+void read_wind(const std::vector<DataFile>& files, OceanSample& ocean, SourceList& sources) {
+  if (files.empty()) {
+    ocean.notes.push_back("no file of winds was named: a scenario takes its own wind_speed");
+    return;
+  }
+  const Wind wind(files, ocean.when);
+  const Tiles& tiles = wind.first();
+  const auto& time = tiles.time_at(ocean.latitude, ocean.longitude);
+  if (wind.second() == nullptr) {
+    ocean.origins.push_back("wind: " + named(tiles));
+    sources.add("wind", tiles.files(), time.said);
+  } else {
+    ocean.origins.push_back("wind: " + named(tiles) + " and " + wind.second()->files()[0].variable);
+    sources.add("eastward wind", tiles.files(), time.said);
+    sources.add("northward wind", wind.second()->files(), time.said);
+    if (time.parts.size() == 1 && tiles.first().times() <= 12)
+      ocean.notes.push_back(
+          "the wind speed is that of its components, which is less than the mean speed where they "
+          "are means");
+  }
+  tell_time(tiles, "the wind", ocean);
+  ocean.notes.insert(ocean.notes.end(), tiles.remarks().begin(), tiles.remarks().end());
+  const double speed = wind.at(ocean.latitude, ocean.longitude);
+  if (!std::isnan(speed))
+    ocean.wind_speed = speed;
+  else
+    ocean.notes.push_back(
+        "the wind is not known there: " + tiles.short_name_at(ocean.latitude, ocean.longitude) +
+        (tiles.holds(ocean.latitude, ocean.longitude) ? " has a hole at " : " does not reach ") +
+        climatology::place(ocean.latitude, ocean.longitude));
+}
+
+void read_profile(const OceanSources& files, OceanSample& ocean, SourceList& sources) {
+  const Water water(files, ocean.when, ocean.latitude, ocean.longitude);
+  const WaterColumn column = water.require(ocean.latitude, ocean.longitude);
   ocean.depth = column.depth;
   ocean.temperature = column.temperature;
   ocean.salinity = column.salinity;
-  if (ocean.depth.empty())
-    throw InputError({.where = path.string() + ": " + place(ocean.latitude, ocean.longitude),
-                      .got = "no temperature and salinity",
-                      .expected = "a place at sea, within the grid"});
+  ocean.speed = column.speed;
   if (ocean.depth.back() < ocean.water_depth)
-    ocean.notes.push_back("the profile ends at " + to_text(ocean.depth.back()) +
-                          " m; below, its last temperature and salinity go on to the bottom at " +
-                          to_text(std::round(ocean.water_depth)) + " m");
-  ocean.origins.push_back("profile: " + path.filename().string() + ", " + hydrography.variables());
+    ocean.notes.push_back(
+        "the profile ends at " + to_text(ocean.depth.back()) + " m; below, its last " +
+        (ocean.speed.empty() ? "temperature and salinity go on" : "speed grows with pressure") +
+        " to the bottom at " + to_text(std::round(ocean.water_depth)) + " m");
+  for (const std::string& origin : water.origins()) ocean.origins.push_back(origin);
+  for (const std::string& note : water.notes(ocean.latitude, ocean.longitude))
+    ocean.notes.push_back(note);
+  for (const Water::Source& source : water.used(ocean.latitude, ocean.longitude))
+    sources.add(source.quantity, source.files, source.time);
+}
+
+void read_sediment(const std::vector<DataFile>& files, OceanSample& ocean, SourceList& sources) {
+  if (!files.empty()) {
+    const SedimentMap map(files, ocean.when);
+    sources.add("sediment", map.tiles().files(),
+                map.tiles().time_at(ocean.latitude, ocean.longitude).said);
+    ocean.origins.push_back("sediment: " + named(map.tiles()));
+    if (const auto there = map.at(ocean.latitude, ocean.longitude)) {
+      ocean.sediment = *there;
+      ocean.sediment_by =
+          "of the map " + map.tiles().short_name_at(ocean.latitude, ocean.longitude);
+      return;
+    }
+    ocean.notes.push_back("the map of sediments says nothing of " +
+                          climatology::place(ocean.latitude, ocean.longitude));
+  }
+  ocean.sediment = sediment_at_depth(ocean.water_depth);
+  ocean.sediment_by = "the data say nothing of the sediment: of the " +
+                      std::string(province_at_depth(ocean.water_depth)) + ", " +
+                      ocean.sediment.name + " was taken";
+  ocean.notes.push_back(ocean.sediment_by + "; --sediment takes a map");
 }
 
 }  // namespace
 
-OceanSources default_ocean_sources(const std::filesystem::path& directory) {
-  return {.hydrography = directory / "levitus_climatology.cdf",
-          .bathymetry = directory / "etopo5.cdf",
-          .wind = directory / "coads_climatology.cdf"};
-}
-
-OceanSample sample_ocean(const OceanSources& sources, double latitude, double longitude,
-                         std::optional<int> month) {
-  check_place(latitude, longitude);
-  if (month && (*month < 1 || *month > 12))
-    throw InputError(
-        {.where = "month", .got = std::to_string(*month), .expected = "a month from 1 to 12"});
-  OceanSample ocean{.latitude = latitude, .longitude = longitude, .month = month};
-  const Bathymetry bathymetry(sources.bathymetry);
-  ocean.water_depth = bathymetry.depth(latitude, longitude);
-  if (!(ocean.water_depth > 0.0))
-    throw InputError({.where = sources.bathymetry.string() + ": " + place(latitude, longitude),
-                      .got = std::isnan(ocean.water_depth)
-                                 ? "no depth"
-                                 : "land, " + to_text(std::round(-ocean.water_depth)) + " m high",
-                      .expected = "a place at sea, within the grid"});
-  read_profile(sources.hydrography, ocean);
-  ocean.origins.push_back("depth: " + sources.bathymetry.filename().string() + ", " +
-                          bathymetry.variable());
-  read_wind(sources.wind, ocean);
+OceanSample sample_ocean(const OceanSources& sources, const OceanRequest& request) {
+  check_request(request);
+  OceanSample ocean{
+      .latitude = request.latitude, .longitude = request.longitude, .when = request.when};
+  SourceList list(ocean);
+  const Floor floor(sources.bathymetry, {});
+  ocean.water_depth = floor.require({request.latitude, request.longitude});
+  read_profile(sources, ocean, list);
+  ocean.origins.push_back("depth: " + named(floor.tiles()));
+  list.add("bathymetry", floor.tiles().files(), "");
+  ocean.notes.insert(ocean.notes.end(), floor.notes().begin(), floor.notes().end());
+  read_wind(sources.wind, ocean, list);
+  read_sediment(sources.sediment, ocean, list);
   return ocean;
 }
 
 // Water and sea floor along a great circle.
 
 namespace {
-
-using namespace climatology;
-
-/// Speed of sound at depths [m], in the way of scenarios of temperature and salinity: PCHIP between
-/// measured levels, the last one's water going on below.
-std::vector<double> speeds_of(const Column& column, const std::vector<double>& depths,
-                              double latitude) {
-  std::vector<double> z, c;
-  const auto add = [&](double depth, std::size_t level) {
-    z.push_back(depth);
-    c.push_back(sound_speed(SeawaterEquation::chen_millero, column.temperature[level],
-                            column.salinity[level], depth, latitude));
-  };
-  if (column.depth.front() > 0.0) add(0.0, 0);
-  for (std::size_t level = 0; level < column.depth.size(); ++level) add(column.depth[level], level);
-  while (z.back() < depths.back()) add(z.back() + 250.0, column.depth.size() - 1);
-  const auto profile = SoundSpeedProfile::table(z, c, Interpolation::pchip);
-  std::vector<double> speed;
-  speed.reserve(depths.size());
-  for (const double depth : depths) speed.push_back(profile.at(depth).c);
-  return speed;
-}
 
 /// Levels for straight lines: the measured ones, where the curve's bend changes, and between them
 /// some 5 m apart near the surface, a thirtieth of the depth further down. A curve leaves its chord
@@ -135,156 +185,97 @@ std::vector<double> levels_down_to(double deepest, const std::vector<double>& me
   for (const double depth : measured)
     if (depth >= levels.back() + 1.0 && depth <= deepest - 1.0) go_to(depth);
   go_to(deepest);
+  levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
   return levels;
 }
 
-/// A place on the sphere at a distance [m] along a great circle: the direct problem,
-/// sin φ₂ = sin φ cos δ + cos φ sin δ cos θ.
-struct Place {
-  double latitude, longitude;  // [°]
-
-  [[nodiscard]] Place at(double distance, double bearing_deg) const {
-    const double phi = radians(latitude), theta = radians(bearing_deg);
-    const double delta = distance / earth_radius;
-    const double sine =
-        std::sin(phi) * std::cos(delta) + std::cos(phi) * std::sin(delta) * std::cos(theta);
-    const double turn = std::atan2(std::sin(theta) * std::sin(delta) * std::cos(phi),
-                                   std::cos(delta) - std::sin(phi) * sine);
-    return {degrees(std::asin(std::clamp(sine, -1.0, 1.0))), longitude + degrees(turn)};
-  }
-};
-
 /// Profiles in the middle of the spans that they are nearest to.
-void read_stations(const Hydrography& hydrography, const Place& start, OceanSection& section) {
+void read_stations(const Water& water, const Place& start, OceanSection& section) {
   struct Segment {
-    Column column;
-    double first, last, latitude;
+    WaterColumn column;
+    double first, last;
+    Place place;
   };
   std::vector<Segment> segments;
+  Place before = start;
+  bool known = false;
   for (const double r : section.range) {
     const Place here = start.at(r, section.bearing_deg);
-    Column column = hydrography.at(here.latitude, here.longitude);
-    if (column.depth.empty()) continue;  // land in the grid: the neighbours' water goes on
+    if (known && water.same(here.latitude, here.longitude, before.latitude, before.longitude)) {
+      segments.back().last = r;
+      before = here;
+      continue;
+    }
+    WaterColumn column = water.at(here.latitude, here.longitude);
+    known = !column.depth.empty();
+    before = here;
+    if (!known) continue;  // land in the grid: the neighbours' water goes on
     if (!segments.empty() && column == segments.back().column)
       segments.back().last = r;
     else
-      segments.push_back({std::move(column), r, r, here.latitude});
+      segments.push_back({std::move(column), r, r, here});
   }
+  if (segments.empty()) static_cast<void>(water.require(start.latitude, start.longitude));
   const double deepest = *std::max_element(section.floor.begin(), section.floor.end());
-  section.depth = levels_down_to(deepest, hydrography.levels());
+  section.depth = levels_down_to(deepest, water.levels());
   for (const Segment& segment : segments) {
     section.station.push_back(0.5 * (segment.first + segment.last));
-    const auto speed = speeds_of(segment.column, section.depth, segment.latitude);
+    const auto speed =
+        climatology::speeds_of(segment.column, section.depth, segment.place.latitude);
     section.speed.insert(section.speed.end(), speed.begin(), speed.end());
   }
 }
 
+/// What the sea floor is along the track: of the map, or as at its start.
+void read_sediments(const OceanSources& sources, const OceanRequest& request,
+                    OceanSection& section) {
+  const Place start{request.latitude, request.longitude};
+  if (sources.sediment.empty()) {
+    const auto province = province_at_depth(section.floor.front());
+    for (std::size_t i = 0; i < section.floor.size(); ++i)
+      if (province_at_depth(section.floor[i]) != province) {
+        section.notes.push_back(
+            "the sediment is that of the start all along the track, which from " +
+            to_text(section.range[i]) + " m on is not the " + std::string(province) +
+            "; --sediment takes a map");
+        break;
+      }
+    return;
+  }
+  const SedimentMap map(sources.sediment, request.when);
+  bool by_depth = false;
+  for (std::size_t i = 0; i < section.range.size(); ++i) {
+    const Place here = start.at(section.range[i], section.bearing_deg);
+    const auto there = map.at(here.latitude, here.longitude);
+    by_depth = by_depth || !there;
+    section.sediment.push_back(there.value_or(sediment_at_depth(section.floor[i])));
+  }
+  if (by_depth)
+    section.notes.push_back("where the map of sediments says nothing, it was taken by the depth");
+  const bool same = std::all_of(section.sediment.begin(), section.sediment.end(),
+                                [&](const Sediment& s) { return s == section.sediment[0]; });
+  if (same) section.sediment.clear();
+}
+
 }  // namespace
 
-OceanSection sample_section(const OceanSources& sources, double latitude, double longitude,
-                            double bearing_deg, double range, std::optional<int> month) {
-  check_place(latitude, longitude);
-  if (!(range > 0.0 && range <= pi * earth_radius))
+OceanSection sample_section(const OceanSources& sources, const OceanRequest& request) {
+  check_request(request);
+  if (!(request.range > 0.0 && request.range <= pi * climatology::earth_radius))
     throw InputError({.where = "range",
-                      .got = to_text(range) + " m",
+                      .got = to_text(request.range) + " m",
                       .expected = "a range above 0 and at most half way round the Earth"});
-  const Bathymetry bathymetry(sources.bathymetry);
-  OceanSection section{.bearing_deg = bearing_deg};
-  const Place start{latitude, longitude};
-  const int steps = std::max(1, static_cast<int>(std::ceil(range / 5000.0)));
-  for (int i = 0; i <= steps; ++i) {
-    const double r = range * i / steps;
-    const Place here = start.at(r, bearing_deg);
-    const double depth = bathymetry.between(here.latitude, here.longitude);
-    if (!(depth > 0.0)) {
-      if (i == 0)
-        throw InputError({.where = sources.bathymetry.string() + ": " + place(latitude, longitude),
-                          .got = "no sea",
-                          .expected = "a transect that starts at sea"});
-      section.notes.push_back("the transect ends at the coast, before " + to_text(r) + " m");
-      break;
-    }
-    section.range.push_back(r);
-    section.floor.push_back(depth);
-  }
-  std::vector<std::string> told_with_the_profile;
-  read_stations(Hydrography(sources.hydrography, month, told_with_the_profile), start, section);
+  const Floor floor(sources.bathymetry, {});
+  const Place start{request.latitude, request.longitude};
+  climatology::Track track =
+      climatology::sample_track(floor, start, request.bearing_deg, request.range, request.step);
+  OceanSection section{.bearing_deg = request.bearing_deg,
+                       .range = std::move(track.range),
+                       .floor = std::move(track.depth),
+                       .notes = std::move(track.notes)};
+  read_stations(Water(sources, request.when, request.latitude, request.longitude), start, section);
+  read_sediments(sources, request, section);
   return section;
-}
-
-namespace {
-
-std::string fixed(double value, int digits) {
-  char text[64] = {};
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
-}
-
-std::string array(const std::vector<double>& values, int digits) {
-  std::string text = "[";
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    text += i == 0 ? "" : i % 10 == 0 ? ",\n  " : ", ";
-    text += fixed(values[i], digits);
-  }
-  return text + "]";
-}
-
-std::string profile_table(const OceanSample& ocean) {
-  std::string text = "kind = \"temperature-salinity\"\n";
-  text += "equation = \"chen-millero\"\nlatitude_deg = " + to_text(ocean.latitude) + "\n";
-  text += "interpolation = \"pchip\"\n";
-  const bool whole = std::all_of(ocean.depth.begin(), ocean.depth.end(),
-                                 [](double z) { return z == std::round(z); });
-  text += "depth = " + array(ocean.depth, whole ? 0 : 1) + "  # [m]\n";
-  text += "temperature = " + array(ocean.temperature, 3) + "  # [degC]\n";
-  text += "salinity = " + array(ocean.salinity, 3) + "  # [psu]\n";
-  return text;
-}
-
-std::string section_table(const OceanSection& section) {
-  std::string text = "kind = \"section\"\nrange = " + array(section.station, 0) + "  # [m]\n";
-  text += "depth = " + array(section.depth, 0) + "  # [m]\n";
-  text += "speed = [  # [m/s], a row for every range\n";
-  const std::size_t n = section.depth.size();
-  for (std::size_t i = 0; i < section.station.size(); ++i) {
-    const auto row = section.speed.begin() + static_cast<std::ptrdiff_t>(i * n);
-    text += array({row, row + static_cast<std::ptrdiff_t>(n)}, 2) + ",\n";
-  }
-  return text + "]\n";
-}
-
-}  // namespace
-
-std::string write_scenario_fragment(const OceanSample& ocean,
-                                    const std::optional<OceanSection>& section) {
-  std::string text = "# The ocean at " + to_text(ocean.latitude) + " N " +
-                     to_text(ocean.longitude) + " E" + ", " +
-                     (ocean.month ? "month " + std::to_string(*ocean.month) : "mean of the year") +
-                     ". Written by asdic ocean.\n";
-  for (const std::string& origin : ocean.origins) text += "# " + origin + "\n";
-  for (const std::string& note : ocean.notes) text += "# Note: " + note + ".\n";
-  if (section)
-    for (const std::string& note : section->notes) text += "# Note: " + note + ".\n";
-  text += "\n[environment]\n";
-  if (ocean.wind_speed) text += "wind_speed = " + fixed(*ocean.wind_speed, 1) + "  # [m/s]\n";
-  if (section)
-    text +=
-        "\n[environment.transect]  # where range 0 is on the map, and where ranges grow\n"
-        "origin = [0.0, 0.0]\nbearing_deg = " +
-        to_text(section->bearing_deg) + "\n";
-  const bool fronts = section && section->station.size() > 1;
-  text += "\n[environment.sound_speed]\n";
-  text += fronts ? section_table(*section) : profile_table(ocean);
-  text += "\n[environment.bottom]\n";
-  if (!section) text += "depth = " + fixed(ocean.water_depth, 0) + "  # [m]\n";
-  text += "kind = \"fluid\"  # the data say nothing of the sediment: this is abyssal clay\n";
-  text += "speed = 1520.0\ndensity = 1400.0\nattenuation_db_per_wavelength = 0.1\n";
-  if (section) {
-    text += "\n[environment.bottom.shape]\ninterpolation = \"smooth\"\n";
-    text += "range = " + array(section->range, 0) + "  # [m]\n";
-    text += "depth = " + array(section->floor, 0) + "  # [m]\n";
-  }
-  return text;
 }
 
 }  // namespace asdic::detail

@@ -10,11 +10,9 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "io/climatology/netcdf_file.h"
 #include "io/climatology/words.h"
-#include "io/files/files_read.h"
 #include "io/files/input_file.h"
-#include "io/hdf5/gate.h"
-#include "io/hdf5/handles.h"
 #include "io/isolated/child.h"
 #include "io/isolated/pack.h"
 
@@ -26,54 +24,6 @@ using climatology::lower;
 constexpr std::size_t longest_axis = 10'000'000;
 constexpr std::size_t largest_piece = 1'000'000;  // values that are read at a time
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
-
-/// A netCDF file, open for reading.
-struct File {
-  int id = -1;
-  std::filesystem::path path;
-
-  explicit File(const std::filesystem::path& where) : path(where) {
-    hdf5::check_contents(path);  // of netCDF-4
-    note_read(path);
-    if (const int status = nc_open(path.c_str(), NC_NOWRITE, &id); status != NC_NOERR) {
-      id = -1;
-      throw InputError(
-          {.where = path.string(),
-           .got = "a file that cannot be opened (" + std::string(nc_strerror(status)) + ")",
-           .expected = "a netCDF file"});
-    }
-  }
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
-  ~File() {
-    if (id >= 0) nc_close(id);
-  }
-
-  void check(int status, const std::string& variable) const {
-    if (status != NC_NOERR)
-      throw InputError({.where = path.string() + ": " + variable,
-                        .got = "a netCDF error (" + std::string(nc_strerror(status)) + ")",
-                        .expected = "a readable variable"});
-  }
-
-  [[nodiscard]] std::string text(int variable, const char* key) const {
-    std::size_t size = 0;
-    nc_type type = NC_NAT;
-    if (nc_inq_att(id, variable, key, &type, &size) != NC_NOERR || type != NC_CHAR) return "";
-    std::string value(size, '\0');
-    if (nc_get_att_text(id, variable, key, value.data()) != NC_NOERR) return "";
-    return value.substr(0, value.find('\0'));
-  }
-
-  [[nodiscard]] std::vector<double> numbers(int variable, const char* key) const {
-    std::size_t size = 0;
-    nc_type type = NC_NAT;
-    if (nc_inq_att(id, variable, key, &type, &size) != NC_NOERR || type == NC_CHAR) return {};
-    std::vector<double> values(size);
-    if (nc_get_att_double(id, variable, key, values.data()) != NC_NOERR) return {};
-    return values;
-  }
-};
 
 /// One dimension of a variable.
 struct Dimension {
@@ -103,7 +53,8 @@ void fields(Dimension& dimension, Visit visit) {
 /// What is known of a variable before its values are read.
 struct Variable {
   bool found = false;
-  std::string name{}, units{}, standard_name{}, long_name{};
+  std::string name{}, units{}, standard_name{}, long_name{}, flag_meanings{};
+  std::vector<double> flag_values{};
   std::vector<Dimension> dimensions{};                      ///< in the order of the variable
   std::vector<double> missing_values{};                     ///< packed
   double least = -std::numeric_limits<double>::infinity();  ///< packed
@@ -125,6 +76,8 @@ void fields(Variable& variable, Visit visit) {
   visit(variable.units);
   visit(variable.standard_name);
   visit(variable.long_name);
+  visit(variable.flag_meanings);
+  visit(variable.flag_values);
   visit(variable.dimensions);
   visit(variable.missing_values);
   visit(variable.least);
@@ -148,7 +101,7 @@ struct AxisKind {
   NetcdfGrid::Axis axis{};
   bool projected = false;
 };
-std::optional<AxisKind> axis_of(const File& file, int variable, const std::string& name) {
+std::optional<AxisKind> axis_of(const NetcdfFile& file, int variable, const std::string& name) {
   using Axis = NetcdfGrid::Axis;
   const std::string units = lower(file.text(variable, "units"));
   const std::string standard = lower(file.text(variable, "standard_name"));
@@ -208,7 +161,7 @@ class VariableReader {
     for (const std::size_t n : part.count) size *= n;
     std::vector<double> values(size);
     file_.check(
-        nc_get_vara_double(file_.id, id_, part.start.data(), part.count.data(), values.data()),
+        nc_get_vara_double(file_.id(), id_, part.start.data(), part.count.data(), values.data()),
         variable_.name);
     out.put(values);
     return out.bytes();
@@ -221,18 +174,18 @@ class VariableReader {
   void read_coordinate(Dimension& dimension, int dimension_id);
   void read_time(Dimension& dimension, int coordinate);
 
-  File file_;
+  NetcdfFile file_;
   int id_ = -1;
   Variable variable_;
 };
 
 void VariableReader::find(const std::vector<std::string>& names) {
   int variables = 0;
-  file_.check(nc_inq_nvars(file_.id, &variables), "variables");
+  file_.check(nc_inq_nvars(file_.id(), &variables), "variables");
   for (const std::string& wanted : names) {
     for (int id = 0; id < variables; ++id) {
       char text[NC_MAX_NAME + 1] = {};
-      file_.check(nc_inq_varname(file_.id, id, text), "variables");
+      file_.check(nc_inq_varname(file_.id(), id, text), "variables");
       if (lower(text) != lower(wanted) && lower(file_.text(id, "standard_name")) != lower(wanted))
         continue;
       id_ = id;
@@ -241,6 +194,8 @@ void VariableReader::find(const std::vector<std::string>& names) {
       variable_.units = file_.text(id, "units");
       variable_.standard_name = file_.text(id, "standard_name");
       variable_.long_name = file_.text(id, "long_name");
+      variable_.flag_meanings = file_.text(id, "flag_meanings");
+      variable_.flag_values = file_.numbers(id, "flag_values");
       read_packing();
       return read_dimensions();
     }
@@ -255,7 +210,7 @@ void VariableReader::read_packing() {
   if (const auto offset = file_.numbers(id_, "add_offset"); !offset.empty())
     variable_.offset = offset[0];
   nc_type type = NC_NAT;
-  file_.check(nc_inq_vartype(file_.id, id_, &type), variable_.name);
+  file_.check(nc_inq_vartype(file_.id(), id_, &type), variable_.name);
   if (file_.numbers(id_, "_FillValue").empty()) {
     if (type == NC_SHORT) variable_.missing_values.push_back(NC_FILL_SHORT);
     if (type == NC_INT) variable_.missing_values.push_back(NC_FILL_INT);
@@ -267,7 +222,7 @@ void VariableReader::read_packing() {
     const auto values = file_.numbers(id_, key);
     if (values.size() <= i) return std::nullopt;
     nc_type kind = NC_NAT;
-    if (nc_inq_atttype(file_.id, id_, key, &kind) != NC_NOERR) return std::nullopt;
+    if (nc_inq_atttype(file_.id(), id_, key, &kind) != NC_NOERR) return std::nullopt;
     if (kind == type || variable_.scale == 0.0) return values[i];
     return (values[i] - variable_.offset) / variable_.scale;
   };
@@ -280,15 +235,15 @@ void VariableReader::read_packing() {
 }
 
 void VariableReader::read_dimensions() {
-  const std::string where = file_.path.string() + ": " + variable_.name;
+  const std::string where = file_.path().string() + ": " + variable_.name;
   int rank = 0;
-  file_.check(nc_inq_varndims(file_.id, id_, &rank), variable_.name);
+  file_.check(nc_inq_varndims(file_.id(), id_, &rank), variable_.name);
   std::vector<int> ids(static_cast<std::size_t>(rank));
-  file_.check(nc_inq_vardimid(file_.id, id_, ids.data()), variable_.name);
+  file_.check(nc_inq_vardimid(file_.id(), id_, ids.data()), variable_.name);
   for (const int dimension_id : ids) {
     char text[NC_MAX_NAME + 1] = {};
     std::size_t size = 0;
-    file_.check(nc_inq_dim(file_.id, dimension_id, text, &size), variable_.name);
+    file_.check(nc_inq_dim(file_.id(), dimension_id, text, &size), variable_.name);
     if (size == 0 || size > longest_axis)
       throw InputError({.where = where,
                         .got = "the dimension " + in_quotes(text) + " of " + std::to_string(size),
@@ -333,13 +288,13 @@ bool rises_or_falls(const std::vector<double>& values) {
 void VariableReader::read_coordinate(Dimension& dimension, int dimension_id) {
   const char* const name = dimension.name.c_str();
   int coordinate = -1, rank = 0, along = -1;
-  if (nc_inq_varid(file_.id, name, &coordinate) != NC_NOERR) return;
-  file_.check(nc_inq_varndims(file_.id, coordinate, &rank), dimension.name);
-  if (rank == 1) file_.check(nc_inq_vardimid(file_.id, coordinate, &along), dimension.name);
+  if (nc_inq_varid(file_.id(), name, &coordinate) != NC_NOERR) return;
+  file_.check(nc_inq_varndims(file_.id(), coordinate, &rank), dimension.name);
+  if (rank == 1) file_.check(nc_inq_vardimid(file_.id(), coordinate, &along), dimension.name);
   if (along != dimension_id) return;  // a variable that only bears its name
   const auto kind = axis_of(file_, coordinate, dimension.name);
   dimension.known = kind.has_value();
-  file_.check(nc_get_var_double(file_.id, coordinate, dimension.values.data()), dimension.name);
+  file_.check(nc_get_var_double(file_.id(), coordinate, dimension.values.data()), dimension.name);
   if (!kind) return;
   const NetcdfGrid::Axis axis = dimension.axis = kind->axis;
   dimension.projected = kind->projected;
@@ -352,7 +307,7 @@ void VariableReader::read_coordinate(Dimension& dimension, int dimension_id) {
     for (double& z : dimension.values) z *= up ? -metres : metres;
   }
   if (!rises_or_falls(dimension.values))
-    throw InputError({.where = file_.path.string() + ": " + dimension.name,
+    throw InputError({.where = file_.path().string() + ": " + dimension.name,
                       .got = "an axis whose values neither rise nor fall",
                       .expected = "an axis that does"});
 }
@@ -364,19 +319,19 @@ void VariableReader::read_time(Dimension& dimension, int coordinate) {
   std::size_t size = 0;
   std::string bounds = file_.text(coordinate, "climatology");
   dimension.every_year =
-      !bounds.empty() || nc_inq_att(file_.id, coordinate, "modulo", &modulo, &size) == NC_NOERR;
+      !bounds.empty() || nc_inq_att(file_.id(), coordinate, "modulo", &modulo, &size) == NC_NOERR;
   if (bounds.empty()) bounds = file_.text(coordinate, "bounds");
   int id = -1, rank = 0, ids[2] = {-1, -1};
-  if (bounds.empty() || nc_inq_varid(file_.id, bounds.c_str(), &id) != NC_NOERR) return;
-  if (nc_inq_varndims(file_.id, id, &rank) != NC_NOERR || rank != 2) return;
+  if (bounds.empty() || nc_inq_varid(file_.id(), bounds.c_str(), &id) != NC_NOERR) return;
+  if (nc_inq_varndims(file_.id(), id, &rank) != NC_NOERR || rank != 2) return;
   std::size_t steps = 0, ends = 0;
-  if (nc_inq_vardimid(file_.id, id, ids) != NC_NOERR ||
-      nc_inq_dimlen(file_.id, ids[0], &steps) != NC_NOERR ||
-      nc_inq_dimlen(file_.id, ids[1], &ends) != NC_NOERR || ends != 2 ||
+  if (nc_inq_vardimid(file_.id(), id, ids) != NC_NOERR ||
+      nc_inq_dimlen(file_.id(), ids[0], &steps) != NC_NOERR ||
+      nc_inq_dimlen(file_.id(), ids[1], &ends) != NC_NOERR || ends != 2 ||
       steps != dimension.values.size())
     return;
   dimension.spans.resize(2 * steps);
-  file_.check(nc_get_var_double(file_.id, id, dimension.spans.data()), bounds);
+  file_.check(nc_get_var_double(file_.id(), id, dimension.spans.data()), bounds);
 }
 
 }  // namespace
@@ -389,11 +344,13 @@ struct NetcdfGrid::Impl {
   std::vector<double> depths;               // increasing
   bool depths_reversed = false;
   bool geographic = true;
+  std::vector<double> plane;  // of a grid in memory: all values
   std::vector<Moment> moments, spans;
   Calendar calendar = Calendar::standard;
   bool every_year = false;
 
   Impl(const std::filesystem::path& path, const std::vector<std::string>& names);
+  Impl() = default;
   void read_axes();
 
   [[nodiscard]] const Dimension* find(Axis axis) const {
@@ -411,8 +368,7 @@ struct NetcdfGrid::Impl {
 NetcdfGrid::Impl::Impl(const std::filesystem::path& path_, const std::vector<std::string>& names)
     : path(path_) {
   require_file(path, "a netCDF file");
-  hdf5::prepare();  // once here, so that children need not
-  nc_initialize();
+  prepare_netcdf();
   child = std::make_unique<isolated::Child>(path, "netCDF", [&] {
     auto reader = std::make_shared<const VariableReader>(path, names);
     return [reader](std::string_view question) { return reader->answer(question); };
@@ -446,6 +402,15 @@ void NetcdfGrid::Impl::read_axes() {
 }
 
 std::vector<double> NetcdfGrid::Impl::read(const Part& part) const {
+  if (child == nullptr) {
+    std::vector<double> values;
+    for (std::size_t j = part.start[0]; j < part.start[0] + part.count[0]; ++j) {
+      const auto row = plane.begin() + static_cast<std::ptrdiff_t>(j * eastings.size());
+      const auto begin = row + static_cast<std::ptrdiff_t>(part.start[1]);
+      values.insert(values.end(), begin, begin + static_cast<std::ptrdiff_t>(part.count[1]));
+    }
+    return values;
+  }
   isolated::Packed question;
   question.put(part);
   auto values = isolated::Unpacked(child->ask(question.bytes())).get<std::vector<double>>();
@@ -484,6 +449,22 @@ std::optional<NetcdfGrid> NetcdfGrid::find(const std::filesystem::path& path,
   return NetcdfGrid(std::move(impl));
 }
 
+NetcdfGrid NetcdfGrid::of_plane(const std::filesystem::path& path, const std::string& variable,
+                                std::vector<double> eastings, std::vector<double> northings,
+                                std::vector<double> values) {
+  auto impl = std::make_unique<Impl>();
+  impl->path = path;
+  impl->variable.found = true;
+  impl->variable.name = variable;
+  impl->variable.units = "m";
+  impl->variable.dimensions = {
+      {.name = "y", .known = true, .axis = Axis::latitude, .values = std::move(northings)},
+      {.name = "x", .known = true, .axis = Axis::longitude, .values = std::move(eastings)}};
+  impl->plane = std::move(values);
+  impl->read_axes();
+  return NetcdfGrid(std::move(impl));
+}
+
 const std::filesystem::path& NetcdfGrid::path() const noexcept { return impl_->path; }
 const std::string& NetcdfGrid::variable() const noexcept { return impl_->variable.name; }
 const std::string& NetcdfGrid::units() const noexcept { return impl_->variable.units; }
@@ -491,6 +472,12 @@ const std::string& NetcdfGrid::standard_name() const noexcept {
   return impl_->variable.standard_name;
 }
 const std::string& NetcdfGrid::long_name() const noexcept { return impl_->variable.long_name; }
+const std::vector<double>& NetcdfGrid::flag_values() const noexcept {
+  return impl_->variable.flag_values;
+}
+const std::string& NetcdfGrid::flag_meanings() const noexcept {
+  return impl_->variable.flag_meanings;
+}
 bool NetcdfGrid::geographic() const noexcept { return impl_->geographic; }
 const std::vector<double>& NetcdfGrid::eastings() const noexcept { return impl_->eastings; }
 const std::vector<double>& NetcdfGrid::northings() const noexcept { return impl_->northings; }
@@ -685,6 +672,14 @@ std::optional<Between> locate(const std::vector<double>& axis, double x, double 
 }
 
 }  // namespace
+
+std::optional<NetcdfGrid::Point> NetcdfGrid::nearest_point(double longitude,
+                                                           double latitude) const {
+  const auto x = locate(impl_->eastings, longitude, impl_->period());
+  const auto y = locate(impl_->northings, latitude, 0.0);
+  if (!x || !y) return std::nullopt;
+  return Point{x->share < 0.5 ? x->low : x->high, y->share < 0.5 ? y->low : y->high};
+}
 
 double NetcdfGrid::nearest(double longitude, double latitude, std::size_t level,
                            std::size_t time) const {

@@ -48,6 +48,13 @@ class NetcdfGrid {
   /// that neither rises nor falls
   [[nodiscard]] static std::optional<NetcdfGrid> find(const std::filesystem::path& path,
                                                       const std::vector<std::string>& names);
+  /// A grid that another reader has in memory: one level, one time. \param northings  as they are
+  /// stored   \param values  [northings × eastings], the last fastest, NaN where missing
+  [[nodiscard]] static NetcdfGrid of_plane(const std::filesystem::path& path,
+                                           const std::string& variable,
+                                           std::vector<double> eastings,
+                                           std::vector<double> northings,
+                                           std::vector<double> values);
   NetcdfGrid(NetcdfGrid&&) noexcept;
   NetcdfGrid& operator=(NetcdfGrid&&) noexcept;
   ~NetcdfGrid();
@@ -57,6 +64,9 @@ class NetcdfGrid {
   [[nodiscard]] const std::string& units() const noexcept;
   [[nodiscard]] const std::string& standard_name() const noexcept;  ///< "" without one
   [[nodiscard]] const std::string& long_name() const noexcept;      ///< "" without one
+  /// Of a variable of classes (CF's flag_values and flag_meanings): a word for each value.
+  [[nodiscard]] const std::vector<double>& flag_values() const noexcept;
+  [[nodiscard]] const std::string& flag_meanings() const noexcept;  ///< words between spaces
   [[nodiscard]] bool has(Axis axis) const noexcept;
   /// Whether the horizontal axes are longitude and latitude; else they are x and y.
   [[nodiscard]] bool geographic() const noexcept;
@@ -85,6 +95,14 @@ class NetcdfGrid {
   /// \throws std::out_of_range
   [[nodiscard]] Block block(Indices east, Indices north, Indices levels = {},
                             std::size_t time = 0) const;
+
+  /// The grid point that is nearest to a place, in the order of the file; nothing where the grid
+  /// does not reach.
+  struct Point {
+    std::size_t i, j;
+    bool operator==(const Point&) const = default;
+  };
+  [[nodiscard]] std::optional<Point> nearest_point(double longitude, double latitude) const;
 
   /// The value of the nearest grid point (never a mixture of land and sea).
   /// \param longitude, latitude  [° east], [° north]; of a projected grid x, y [m]   \param level

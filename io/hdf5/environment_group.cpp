@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/units.h"
 #include "io/hdf5/scale.h"
 
 namespace asdic::detail {
@@ -76,6 +77,33 @@ void write_environment_group(Hdf5File& file, const Environment& ocean, double fi
   scale(file, "section_depth", {z.begin(), z.end()}, "depth, positive down", cf::depth_axis);
   column(file, "section_speed", {c.begin(), c.end()}, {"section_range", "section_depth"},
          {r.size(), z.size()}, "speed of sound", "m/s", cf::sound_speed);
+}
+
+std::optional<OriginAttributes> attributes_of(const std::optional<OceanOrigin>& origin) {
+  if (!origin) return std::nullopt;
+  return OriginAttributes{.latitude_deg = degrees(origin->latitude),
+                          .longitude_deg = degrees(origin->longitude),
+                          .time = origin->time,
+                          .sources = origin->source_lines()};
+}
+
+void write_origin(Hdf5File& file, const std::optional<OriginAttributes>& origin) {
+  if (!origin) return;
+  file.set_attribute("", "latitude_deg", origin->latitude_deg);
+  file.set_attribute("", "longitude_deg", origin->longitude_deg);
+  if (!origin->time.empty()) file.set_attribute("", "ocean_time", origin->time);
+  if (!origin->sources.empty()) file.set_attribute("", "ocean_sources", origin->sources);
+}
+
+std::optional<OriginAttributes> read_origin_attributes(const Hdf5File& file) {
+  if (!file.has_attribute("", "latitude_deg") || !file.has_attribute("", "longitude_deg"))
+    return std::nullopt;
+  OriginAttributes origin{.latitude_deg = file.attribute_number("", "latitude_deg"),
+                          .longitude_deg = file.attribute_number("", "longitude_deg"),
+                          .time = file.attribute_or("", "ocean_time", "")};
+  if (file.has_attribute("", "ocean_sources"))
+    origin.sources = file.attribute_texts("", "ocean_sources");
+  return origin;
 }
 
 }  // namespace asdic::detail

@@ -10,6 +10,7 @@
 #include "core/text.h"
 #include "core/unit_text.h"
 #include "io/files/digest.h"
+#include "io/hdf5/environment_group.h"
 #include "io/hdf5/scale.h"
 #include "io/ping/growing_table.h"
 #include "io/scenario/ocean.h"
@@ -51,6 +52,7 @@ void write_root(Hdf5File& file, const Scenario& scenario, const Provenance& prov
   file.set_attribute("", "complete", std::int64_t{0});
   if (!scenario.overrides.empty()) file.set_attribute("", "overrides", scenario.overrides);
   if (!scenario.notes.empty()) file.set_attribute("", "warnings", scenario.notes);
+  write_origin(file, attributes_of(scenario.origin));
   file.write_text("scenario", text);
   describe(file, "scenario", "the scenario file, verbatim");
 

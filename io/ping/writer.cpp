@@ -24,6 +24,7 @@ void PingFileWriter::Impl::create_ping_datasets() {
   growing<double>("elevation_deg", "elevation of the transmitter's beam, positive up", "degree");
   growing<double>("platform_position", "of the transmitter at the start of the ping", "m", {"xyz"},
                   {3});
+  create_places({"platform_latitude", "platform_longitude"}, "transmitter", {}, {});
   growing<double>("platform_velocity", "velocity of the transmitter", "m/s", {"xyz"}, {3});
   const std::size_t channels = channels_of(scenario), targets = scenario.targets.size();
   growing<double>("phone_position", "phones at the start of the ping", "m", {"channel", "xyz"},
@@ -50,6 +51,7 @@ void PingFileWriter::Impl::create_ping_datasets() {
   if (targets == 0) return;
   const std::vector<std::string> scale{"target_index"}, vector{"target_index", "xyz"};
   growing<double>("target_position", "target at the start of the ping", "m", vector, {targets, 3});
+  create_places({"target_latitude", "target_longitude"}, "target", scale, {targets});
   growing<double>("target_velocity", "velocity of the target", "m/s", vector, {targets, 3});
   growing<double>("target_strength_db",
                   "target strength at its aspect from the transmitter, without fluctuation", "dB",
@@ -165,11 +167,34 @@ void PingFileWriter::Impl::append_pressure(const PingRecord& record) {
   file.append<float>("pressure", padded);
 }
 
+void PingFileWriter::Impl::create_places(const PlaceNames& names, const std::string& whose,
+                                         const std::vector<std::string>& scales, const Shape& row) {
+  if (!scenario.origin) return;
+  growing<double>(names.latitude, "of the " + whose + " at the start of the ping", "degrees_north",
+                  scales, row, {.standard_name = "latitude"});
+  growing<double>(names.longitude, "of the " + whose + " at the start of the ping", "degrees_east",
+                  scales, row, {.standard_name = "longitude"});
+}
+
+void PingFileWriter::Impl::append_places(const PlaceNames& names,
+                                         const std::vector<Vec3>& positions) {
+  if (!scenario.origin) return;
+  std::vector<double> latitude, longitude;
+  for (const Vec3& position : positions) {
+    const auto place = on_the_globe(*scenario.origin, position.x(), position.y());
+    latitude.push_back(place.latitude);
+    longitude.push_back(place.longitude);
+  }
+  file.append<double>(names.latitude, latitude);
+  file.append<double>(names.longitude, longitude);
+}
+
 void PingFileWriter::Impl::append_geometry(const PingRecord& record) {
   file.append<std::int32_t>("transmitter", std::array{std::int32_t{record.transmitter}});
   file.append<double>("ping_time", std::array{record.start_time});
   file.append<double>("elevation_deg", std::array{degrees(record.elevation)});
   file.append<double>("platform_position", flat(record.platform.position));
+  append_places({"platform_latitude", "platform_longitude"}, {record.platform.position});
   file.append<double>("platform_velocity", flat(record.platform.velocity));
   std::vector<double> phones;
   for (const Vec3& phone : record.phones)
@@ -186,6 +211,9 @@ void PingFileWriter::Impl::append_geometry(const PingRecord& record) {
     present.push_back(record.ping >= target.first_ping && record.ping <= target.last_ping ? 1 : 0);
   }
   file.append<double>("target_position", position);
+  std::vector<Vec3> places;
+  for (const auto& target : record.targets) places.push_back(target.position);
+  append_places({"target_latitude", "target_longitude"}, places);
   file.append<double>("target_velocity", velocity);
   file.append<double>("target_strength_db", strength);
   file.append<std::int8_t>("target_present", present);

@@ -57,6 +57,13 @@ struct PingFileWriter::Impl {
   void create_ping_datasets();
   void create_sampled_datasets(const PingRecord& record);
   void append_pressure(const PingRecord& record);
+  /// Latitudes and longitudes, where the map has a place on the Earth.
+  struct PlaceNames {
+    std::string latitude, longitude;
+  };
+  void create_places(const PlaceNames& names, const std::string& whose,
+                     const std::vector<std::string>& scales, const Shape& row);
+  void append_places(const PlaceNames& names, const std::vector<Vec3>& positions);
   void append_geometry(const PingRecord& record);
   void append_tables(const PingRecord& record);
   void append_summary(const PingRecord& record);

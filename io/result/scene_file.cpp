@@ -90,6 +90,7 @@ void write_scene(const std::filesystem::path& path, const Scenario& scenario) {
   write_filetype(file, "asdic scene", "1.0");
   file.set_attribute("", "title", scenario.title);
   file.set_attribute("", "scenario_sha256", sha256(scenario.text));
+  write_origin(file, attributes_of(scenario.origin));
   Tracks tracks(file, end_of(scenario.pings));
   tracks.write("platforms", names_of(scenario.platforms), [&](std::size_t i, double time) -> Vec3 {
     return scenario.platforms[i].track.at(time).position;
@@ -134,6 +135,7 @@ void write_scene(const std::filesystem::path& path, const PropagationCase& run) 
   Hdf5File file = Hdf5File::create(path);
   write_filetype(file, "asdic scene", "1.0");
   file.set_attribute("", "title", run.title);
+  write_origin(file, attributes_of(run.origin));
   file.set_attribute("", "frequency_hz", run.frequency);
   file.write<double>("source_depth", run.source_depths, {run.source_depths.size()});
   describe(file, "source_depth", "of the sources, at range 0", "m");

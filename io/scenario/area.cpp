@@ -98,7 +98,7 @@ AreaTable table_of(const AreaSettings& settings) {
 }  // namespace
 
 AreaReading::AreaReading(TomlTable table, const OceanReading& reading,
-                         const std::optional<GeographicPlace>& origin)
+                         const std::optional<OceanOrigin>& of_map)
     : table_(std::move(table)), reading_(reading) {
   KnownSettings known{.numbers = {{"frequency", reading.frequency},
                                   {"water.speed", 1500.0},
@@ -107,6 +107,8 @@ AreaReading::AreaReading(TomlTable table, const OceanReading& reading,
   AreaTable form;
   TomlReader reader(table_, known);
   form.describe(reader);
+  std::optional<GeographicPlace> origin;
+  if (of_map) origin = {degrees(of_map->latitude), degrees(of_map->longitude)};
   settings_ = {.origin = origin,
                .easting = form.easting,
                .northing = form.northing,

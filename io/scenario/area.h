@@ -23,7 +23,7 @@ class AreaReading {
   /// \param origin  of the map's [0, 0]; none: it is not known
   /// \throws InputError for keys and files that do not fit
   AreaReading(TomlTable table, const OceanReading& reading,
-              const std::optional<GeographicPlace>& origin);
+              const std::optional<OceanOrigin>& origin);
 
   [[nodiscard]] const ScalarMap& floor() const { return *floor_; }
   [[nodiscard]] const std::optional<WaterMap>& water() const { return water_; }

@@ -69,6 +69,8 @@ void describe_wind(Fields& field, double& wind_speed) {
   field(live("wind_speed"), wind_speed, quantity::wind_speed, "at 10 m height");
 }
 
+constexpr std::string_view what_origin = "where on the Earth the map's [0, 0] is";
+
 void describe_spreading(Fields& field, Spreading& spreading) {
   field("spreading", spreading, "what the sea is beside the plane");
 }
@@ -78,25 +80,6 @@ SoundSpeedProfile water_at_origin(const WaterMap& water) {
   const auto depths = water.depths().places();
   return SoundSpeedProfile::table(depths, water.column(0.0, 0.0, depths), Interpolation::c_linear);
 }
-
-/// [environment.origin]
-struct OriginTable {
-  double latitude = 0.0, longitude = 0.0;  // [rad]
-
-  void describe(Fields& field) {
-    constexpr AngleQuantity north{.noun = "latitude", .low_deg = -90.0, .high_deg = 90.0};
-    constexpr AngleQuantity east{.noun = "longitude", .low_deg = -360.0, .high_deg = 360.0};
-    field(required("latitude"), latitude, north, "of the map's [0, 0], north");
-    field(required("longitude"), longitude, east, "of the map's [0, 0], east");
-  }
-};
-
-std::optional<OriginTable> table_of(const std::optional<GeographicPlace>& origin) {
-  if (!origin) return std::nullopt;
-  return OriginTable{radians(origin->latitude), radians(origin->longitude)};
-}
-
-constexpr std::string_view what_origin = "where on the Earth the map's [0, 0] is";
 
 }  // namespace
 
@@ -108,17 +91,16 @@ Transect read_transect(TomlTable& table) {
   return transect.transect;
 }
 
-std::optional<GeographicPlace> read_origin(TomlTable& table) {
+std::optional<OceanOrigin> read_origin(TomlTable& table) {
   KnownSettings known;
   TomlReader reader(table, known);
-  std::optional<OriginTable> origin;
+  std::optional<OceanOrigin> origin;
   reader("origin", origin, what_origin);
-  if (!origin) return std::nullopt;
-  return GeographicPlace{degrees(origin->latitude), degrees(origin->longitude)};
+  return origin;
 }
 
 std::optional<AreaReading> read_area(TomlTable& table, const OceanReading& reading,
-                                     const std::optional<GeographicPlace>& origin) {
+                                     const std::optional<OceanOrigin>& origin) {
   if (!table.has("area")) return std::nullopt;
   return AreaReading(table.table("area"), reading, origin);
 }
@@ -172,7 +154,7 @@ struct SonarOcean {
   void describe(Fields& field) const {
     double wind_speed = scenario.wind_speed;
     describe_wind(field, wind_speed);
-    std::optional<OriginTable> origin = table_of(scenario.origin);
+    std::optional<OceanOrigin> origin = scenario.origin;
     field("origin", origin, what_origin);
     TransectTable transect{scenario.transect};
     field("transect", transect, "where the ocean's range axis lies on the map");

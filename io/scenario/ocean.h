@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -8,6 +9,7 @@
 #include "core/fields.h"
 #include "io/text/toml_table.h"
 #include "raytrace/area/ocean_on_map.h"
+#include "raytrace/ocean/ocean_origin.h"
 
 namespace asdic::detail {
 
@@ -75,10 +77,10 @@ struct OceanTable {
 /// [environment.transect]
 [[nodiscard]] Transect read_transect(TomlTable& table);
 /// [environment.origin]; none: it is not said.
-[[nodiscard]] std::optional<GeographicPlace> read_origin(TomlTable& table);
+[[nodiscard]] std::optional<OceanOrigin> read_origin(TomlTable& table);
 /// [environment.area], its files opened; none: there is none.
 [[nodiscard]] std::optional<AreaReading> read_area(TomlTable& table, const OceanReading& reading,
-                                                   const std::optional<GeographicPlace>& origin);
+                                                   const std::optional<OceanOrigin>& origin);
 
 /// All of [environment] but what only a sonar needs (wind_speed, transect), origin and area: the
 /// caller asks for those keys, and finishes the table.

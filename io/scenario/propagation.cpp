@@ -35,9 +35,10 @@ PropagationCase of_ocean_and_run(const TomlValue& document, const std::filesyste
   TomlTable environment = root.table("environment");
   for (const char* of_a_sonar : {"wind_speed", "transect"})
     static_cast<void>(environment.has(of_a_sonar));
+  run.origin = scenario::read_origin(environment);
   scenario::OceanReading reading{.folder = folder, .frequency = run.frequency, .notes = notes};
   std::optional<scenario::AreaReading> area =
-      scenario::read_area(environment, reading, scenario::read_origin(environment));
+      scenario::read_area(environment, reading, run.origin);
   if (area) reading.area = &*area;
   run.environment = scenario::read_ocean(environment, reading);
   if (area) {
@@ -61,6 +62,7 @@ PropagationCase of_sonar(const TomlValue& document, const Scenario& scenario,
   const Vec3 platform = scenario.platforms[0].track.at(0.0).position;
   PropagationCase run;
   run.title = scenario.title;
+  run.origin = scenario.origin;
   run.environment =
       ocean_on_map(scenario).plane(platform.head<2>(), scenario.transect.bearing, reach_of_area);
   if (scenario.area)

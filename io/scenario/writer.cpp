@@ -8,12 +8,25 @@
 namespace asdic::detail {
 namespace {
 
+/// [environment] of an ocean without a sonar.
+struct PlacedOcean {
+  const Environment& ocean;
+  const std::optional<OceanOrigin>& origin;
+
+  void describe(Fields& field) const {
+    std::optional<OceanOrigin> shown = origin;
+    if (origin) field("origin", shown, "where on the Earth the map's [0, 0] is");
+    scenario::OceanTable{ocean}.describe(field);
+  }
+};
+
 /// A file with an ocean alone, for `include`.
 struct OceanDocument {
   const Environment& ocean;
+  const std::optional<OceanOrigin> origin = {};
 
   void describe(Fields& field) const {
-    scenario::OceanTable environment{ocean};
+    PlacedOcean environment{ocean, origin};
     field("environment", environment, "the water and its boundaries");
   }
 };
@@ -25,7 +38,7 @@ struct CaseDocument {
   void describe(Fields& field) const {
     PropagationCase shown = run_case;
     field(seldom("title"), shown.title, "of the case");
-    OceanDocument{run_case.environment}.describe(field);
+    OceanDocument{run_case.environment, run_case.origin}.describe(field);
     scenario::RunTable run{shown};
     field("run", run, "what the propagation model is to do");
   }

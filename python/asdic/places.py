@@ -29,30 +29,55 @@ class Ocean(Scenario):
         return list(self._origins)
 
 
-def ocean(latitude: float, longitude: float, month: int | None = None, *,
-          bearing_deg: float | None = None, range: float | None = None, data=None,
+def _names(files) -> list[str]:
+    if files is None:
+        return []
+    one = isinstance(files, (str, os.PathLike))
+    return [os.fspath(file) for file in ([files] if one else files)]
+
+
+def ocean(latitude: float, longitude: float, month: int | None = None, *, date=None,
+          bearing_deg: float | None = None, range: float | None = None, step: float | None = None,
+          area: float | None = None, output=None, temperature=None, salinity=None,
+          sound_speed=None, bathymetry=None, wind=None, sediment=None, data=None,
           **sections) -> Ocean:
-    """The ocean of a real place, out of gridded climatologies, as ``asdic ocean`` writes it.
+    """The ocean of a real place, out of measured data, as ``asdic ocean`` writes it.
 
     Parameters
     ----------
     latitude, longitude : float
         Degrees north and east, longitude from -180 to 180 or 0 to 360.
     month : int, optional
-        1 to 12; without it, the mean of the year.
+        1 to 12: the mean of the data's times in it; without it, the mean of all.
+    date : str or date, optional
+        In place of a month: "2024-02-29", "2024-02-29T06:00", or what has ``isoformat()``.
     bearing_deg, range : float, optional
         A track from there: true bearing and length [m]. Sea floor and water are those along it.
+    step : float, optional
+        Between depths along the track [m]; without it, the grid's own spacing.
+    area : float, optional
+        Side of a square about the place [m], in place of a track: its maps are written to a netCDF
+        file beside ``output``, a name that ends in .toml.
+    temperature, salinity, sound_speed, bathymetry, wind, sediment : path or paths, optional
+        Files of data, "FILE" or "FILE:VARIABLE", as the options of ``asdic ocean`` take them; more
+        than one where they are tiles, times, or levels of one another.
     data : path, optional
-        Folder of the climatologies; that of Debian's package ferret-datasets.
+        Folder of what is not named; that of Debian's package ferret-datasets.
     **sections
         Everything else of a scenario, as :class:`Scenario` takes it: ``pulse={"kind": "cw", ...}``.
 
-    Raises InputError for a place on land, and for data that are not there.
+    Raises InputError for a place on land, and for data that are not there or in another unit.
 
-    The data say nothing of the sediment: the floor is abyssal clay. What they do not say else is in
-    docs/guide/real-ocean.md.
+    Where no map of sediments is named, the floor is what is most common at its depth, and a note
+    says so. Files, digests, times and place are in ``environment.origin``. What the data do not say
+    is in docs/guide/real-ocean.md.
     """
-    core, origins, notes = _core.ocean(latitude, longitude, month, bearing_deg, range,
+    files = {"temperature": _names(temperature), "salinity": _names(salinity),
+             "sound_speed": _names(sound_speed), "bathymetry": _names(bathymetry),
+             "wind": _names(wind), "sediment": _names(sediment)}
+    day = "" if date is None else date if isinstance(date, str) else date.isoformat()
+    core, origins, notes = _core.ocean(latitude, longitude, month, day, bearing_deg, range, step,
+                                       area, "" if output is None else os.fspath(output), files,
                                        "" if data is None else os.fspath(data))
     made = Ocean._of_core(core)
     object.__setattr__(made, "_notes", notes)

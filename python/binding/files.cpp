@@ -1,3 +1,5 @@
+#include <map>
+
 #include "watched.h"
 
 namespace asdic::python {
@@ -33,12 +35,33 @@ void add_files(py::module_& module) {
     BellhopCase found = read_bellhop(root);
     return py::make_tuple(found.scenario, found.notes);
   });
+  using Files = std::map<std::string, std::vector<std::string>>;
   module.def("ocean", [](double latitude, double longitude, std::optional<int> month,
-                         std::optional<double> bearing_deg, std::optional<double> range,
-                         const std::filesystem::path& data) {
-    const Ocean found = watched([&](const Watch&) {
-      return ocean({latitude, longitude, month, bearing_deg, range, data});
-    });
+                         const std::string& date, std::optional<double> bearing_deg,
+                         std::optional<double> range, std::optional<double> step,
+                         std::optional<double> area, const std::filesystem::path& output,
+                         const Files& files, const std::filesystem::path& data) {
+    OceanPlace place{.latitude_deg = latitude,
+                     .longitude_deg = longitude,
+                     .month = month,
+                     .date = date,
+                     .bearing_deg = bearing_deg,
+                     .range = range,
+                     .step = step,
+                     .area = area,
+                     .output = output,
+                     .data = data};
+    const auto of = [&](const char* quantity) {
+      const auto found = files.find(quantity);
+      return found == files.end() ? std::vector<std::string>{} : found->second;
+    };
+    place.temperature = of("temperature");
+    place.salinity = of("salinity");
+    place.sound_speed = of("sound_speed");
+    place.bathymetry = of("bathymetry");
+    place.wind = of("wind");
+    place.sediment = of("sediment");
+    const Ocean found = watched([&](const Watch&) { return ocean(place); });
     return py::make_tuple(found.scenario, found.origins, found.notes);
   });
   module.def("write_run", [](const std::filesystem::path& path, const Scenario& scenario,

@@ -6,6 +6,7 @@
 
 #include "core/units.h"
 #include "raytrace/area/ocean_on_map.h"
+#include "raytrace/ocean/ocean_origin.h"
 
 namespace asdic::detail {
 
@@ -98,7 +99,8 @@ struct LiteralSettings {
 struct PropagationCase {
   std::string title;
   double frequency = 1000.0;  ///< [Hz]
-  Environment environment;    ///< along the transect
+  Environment environment;            ///< along the transect
+  std::optional<OceanOrigin> origin;  ///< where on the Earth it is, and what it was made of
   /// The area that it is cut out of: from a place on the map along a bearing.
   struct OnArea {
     std::shared_ptr<const Area> area;

@@ -144,4 +144,86 @@ double sound_speed(SeawaterEquation equation, double temperature_degc, double sa
   return sound_speed_del_grosso(temperature_degc, salinity, gauge_pressure(z, latitude_deg));
 }
 
+double depth_at_pressure(double gauge_pressure_, double latitude_deg) noexcept {
+  if (!(gauge_pressure_ > 0.0)) return 0.0;
+  double z = gauge_pressure_ / 1.01e4;  // Newton: pressure grows by 1.01e4 Pa/m, within 3 %
+  for (int i = 0; i < 20; ++i) {
+    const double step = (gauge_pressure_ - gauge_pressure(z, latitude_deg)) / 1.01e4;
+    z += step;
+    if (std::abs(step) < 1e-7) break;
+  }
+  return z;
+}
+
+namespace {
+
+/// Γ(S, T, p) [K/dbar] at T [°C, IPTS-68] and p [dbar]. Bryden (1973).
+double adiabatic_lapse_rate(double s, double t, double p) noexcept {
+  const double ds = s - 35.0;
+  const double at_surface = polynomial(std::array{3.5803e-5, 8.5258e-6, -6.836e-8, 6.6228e-10}, t) +
+                            polynomial(std::array{1.8932e-6, -4.2393e-8}, t) * ds;
+  const double by_p = polynomial(std::array{1.8741e-8, -6.7795e-10, 8.733e-12, -5.4481e-14}, t) +
+                      polynomial(std::array{-1.1351e-10, 2.7759e-12}, t) * ds;
+  const double by_p2 = polynomial(std::array{-4.6206e-13, 1.8676e-14, -2.1687e-16}, t);
+  return at_surface + p * (by_p + p * by_p2);
+}
+
+constexpr double t68_over_t90 = 1.00024;
+
+}  // namespace
+
+double temperature_in_situ(double potential_degc, double salinity, double gauge_pressure) noexcept {
+  const double end = gauge_pressure / 1e4;  // [dbar]
+  const int steps = std::max(1, static_cast<int>(std::ceil(end / 2000.0)));
+  const double h = end / steps;
+  double t = potential_degc * t68_over_t90;
+  for (int i = 0; i < steps; ++i) {  // dT/dp = Γ, Runge and Kutta's fourth order
+    const double p = h * i;
+    const double k1 = adiabatic_lapse_rate(salinity, t, p);
+    const double k2 = adiabatic_lapse_rate(salinity, t + h / 2.0 * k1, p + h / 2.0);
+    const double k3 = adiabatic_lapse_rate(salinity, t + h / 2.0 * k2, p + h / 2.0);
+    const double k4 = adiabatic_lapse_rate(salinity, t + h * k3, p + h);
+    t += h / 6.0 * (k1 + 2.0 * (k2 + k3) + k4);
+  }
+  return t / t68_over_t90;
+}
+
+namespace {
+
+/// Conservative temperature of potential temperature: potential enthalpy over c_p⁰. A polynomial in
+/// x² = S_A/(40 g/kg·35.16504/35) and y = θ/40 °C, row by power of x, column by power of y.
+constexpr std::array H0 = {61.01362420681071,  168776.46138048015,  -2735.2785605119625,
+                           2574.2164453821433, -1536.6644434977543, 545.7340497931629,
+                           -50.91091728474331, -18.30489878927802};
+constexpr std::array H2 = {268.5520265845071,   -12019.028203559312, 3734.858026725145,
+                           -2046.7671145057618, 465.28655623826234,  -0.6370820302376359,
+                           -10.650848542359153};
+constexpr std::array H3 = {937.2099110620707, 588.1802812170108, 248.39476522971285,
+                           -3.871557904936333, -2.6268019854268356};
+constexpr std::array H4 = {-1687.914374187449, 936.3206544460336,  -942.7827304544439,
+                           369.4389437509002,  -33.83664947895248, -9.987880382780322};
+constexpr std::array H5 = {246.9598888781377, 123.59576582457964, -48.5891069025409};  // by x
+
+double conservative_temperature(double theta, double x2) noexcept {
+  const double x = std::sqrt(x2), y = theta / 40.0;
+  const double enthalpy =
+      polynomial(H0, y) +
+      x2 * (polynomial(H2, y) +
+            x * (polynomial(H3, y) + x * (polynomial(H4, y) + x * polynomial(H5, x))));
+  return enthalpy / 3991.86795711963;
+}
+
+}  // namespace
+
+double potential_temperature(double conservative_degc, double absolute_salinity) noexcept {
+  const double x2 = std::max(0.0, absolute_salinity) * 35.0 / (40.0 * 35.16504);
+  double theta = conservative_degc;  // Θ leaves θ by at most 1.4 K, and dΘ/dθ 1 by 6 %
+  for (int i = 0; i < 50; ++i) {
+    const double step = conservative_degc - conservative_temperature(theta, x2);
+    theta += step;
+    if (std::abs(step) < 1e-10) break;
+  }
+  return theta;
+}
+
 }  // namespace asdic::detail

@@ -48,8 +48,31 @@ enum class SeawaterEquation {
 /// own, not applied here: some 10 kPa, which is 1 m of depth or 0.02 m/s.
 [[nodiscard]] double gauge_pressure(double depth, double latitude_deg) noexcept;
 
+/// The inverse: the depth at which there is a pressure above the atmosphere's [m], to 1e-6 m; 0 for
+/// none. What a CTD measures becomes the depth of the formula by which sound speeds are computed.
+[[nodiscard]] double depth_at_pressure(double gauge_pressure, double latitude_deg) noexcept;
+
 /// The same in the standard ocean itself, 0 °C and 35 psu at every depth: what published check
 /// values are for.
 [[nodiscard]] double gauge_pressure_standard_ocean(double depth, double latitude_deg) noexcept;
+
+/// The temperature in situ of water whose potential temperature is known, that which it would have
+/// at the surface [°C, ITS-90]: its adiabatic lapse rate (Bryden, Deep-Sea Res. 20, 401, 1973, as
+/// in UNESCO Techn. Papers in Marine Science 44, 1983), integrated from the surface down; models of
+/// the ocean give potential temperatures. \param gauge_pressure  [Pa]
+[[nodiscard]] double temperature_in_situ(double potential_degc, double salinity,
+                                         double gauge_pressure) noexcept;
+
+/// Potential temperature of a conservative temperature [°C] and an absolute salinity [g/kg]: the
+/// potential enthalpy of TEOS-10, a polynomial, solved by iteration to 1e-9 K. IOC, SCOR and
+/// IAPSO, The international thermodynamic equation of seawater – 2010, eq. (3.3.2).
+[[nodiscard]] double potential_temperature(double conservative_degc,
+                                           double absolute_salinity) noexcept;
+
+/// [psu], but for the anomaly of absolute salinity by place (at most 0.03 g/kg): S_P =
+/// S_A·35/35.16504.
+[[nodiscard]] constexpr double practical_salinity(double absolute_salinity) noexcept {
+  return absolute_salinity * (35.0 / 35.16504);
+}
 
 }  // namespace asdic::detail

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "raytrace/area/ocean_on_map.h"
+#include "raytrace/ocean/ocean_origin.h"
 #include "reverb/fields/reverberation_settings.h"
 #include "sonar/scenario/array.h"
 #include "sonar/scenario/interferer.h"
@@ -25,7 +26,7 @@ struct Scenario {
   std::uint64_t seed = 1;
   Environment environment;                       ///< along the transect
   Transect transect;                             ///< where its range axis lies on the map
-  std::optional<GeographicPlace> origin;         ///< where the map's [0, 0] is; none: not known
+  std::optional<OceanOrigin> origin;             ///< where the map is, and what it was made of
   std::shared_ptr<const Area> area;              ///< the ocean over the map; none: the transect's
   double wind_speed = 10.0;                      ///< at 10 m [m/s]
   std::vector<Platform> platforms = {{}};        ///< carry transmitters and arrays

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "io/scenario/ocean.h"
 #include "study/measures/warnings.h"
 #include "study/sampling/design.h"
 
@@ -43,6 +44,14 @@ std::string listed(const std::set<std::string>& texts) {
   return result;
 }
 
+/// [environment.origin] of the scenario.
+std::optional<OriginAttributes> origin_of(const Study& study) {
+  const TomlValue* const environment = study.scenario.find("environment");
+  if (environment == nullptr || environment->find("origin") == nullptr) return std::nullopt;
+  TomlTable table(*environment, "environment");
+  return attributes_of(scenario::read_origin(table));
+}
+
 }  // namespace
 
 Fingerprint fingerprint_of(const Study& study) {
@@ -56,6 +65,7 @@ Fingerprint fingerprint_of(const Study& study) {
           .design = std::string(name(study.design)),
           .text = study.text,
           .scenario_text = study.scenario_text,
+          .origin = origin_of(study),
           .overrides = study.overrides,
           .warnings = std::move(judgement.warnings),
           .left_out_db = judgement.left_out_db,

@@ -1,9 +1,11 @@
 #pragma once
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "io/hdf5/environment_group.h"
 #include "io/ping/ping_file.h"
 #include "study/measures/realisation.h"
 #include "study/summary/summary.h"
@@ -18,6 +20,7 @@ struct Fingerprint {
   std::uint64_t realisations = 0;  ///< of the whole study
   std::string design{};            ///< "random", …
   std::string text{}, scenario_text{};
+  std::optional<OriginAttributes> origin{};  ///< where on the Earth its map is
   std::vector<std::string> overrides{};
   std::vector<std::string> warnings{};  ///< what is to be known before the numbers are trusted
   /// Of the levels, by paths of more bounces, estimated [dB]; not a number: not known.

@@ -64,6 +64,7 @@ StudyFile::StudyFile(const std::filesystem::path& path)
         .design = file_.attribute_text("", "design"),
         .text = file_.read_text("study"),
         .scenario_text = file_.read_text("scenario"),
+        .origin = read_origin_attributes(file_),
         .overrides = file_.has_attribute("", "overrides") ? file_.attribute_texts("", "overrides")
                                                           : std::vector<std::string>{},
         .warnings = file_.has_attribute("", "warnings") ? file_.attribute_texts("", "warnings")

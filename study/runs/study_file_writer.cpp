@@ -164,7 +164,7 @@ std::string joined(const std::vector<std::string>& texts) {
 
 void StudyFileWriter::write_root() {
   const Fingerprint& fingerprint = results_.fingerprint;
-  write_filetype(file_, "asdic study", "1.2");
+  write_filetype(file_, "asdic study", "1.3");
   file_.set_attribute("", "title", fingerprint.title);
   file_.set_attribute("", "identity", fingerprint.identity);
   file_.set_attribute("", "seed", std::to_string(fingerprint.seed));
@@ -184,6 +184,7 @@ void StudyFileWriter::write_root() {
   const auto build = [](const Session& s) { return s.made.build; };
   file_.set_attribute("", "program_version", joined(different(sessions, version)));
   file_.set_attribute("", "build", joined(different(sessions, build)));
+  write_origin(file_, fingerprint.origin);
   text("study", fingerprint.text, "the study file, verbatim");
   text("scenario", fingerprint.scenario_text, "the scenario file, verbatim");
 }

@@ -120,7 +120,7 @@ TEST_F(AreaFiles, HeightsAreDepthsAtTheirPlaces) {
   EXPECT_NEAR(here.value, 1420.0, 1e-6);
   EXPECT_NEAR(here.x, 2.0 / (0.005 * degree * std::cos(radians(40.0))), 1e-7);
   EXPECT_NEAR(here.y, 5.0 / (0.005 * degree), 1e-7);
-  EXPECT_EQ(s.origin, (GeographicPlace{40.0, -20.0}));
+  EXPECT_EQ(s.area->settings().origin, (GeographicPlace{40.0, -20.0}));
   EXPECT_NEAR(s.environment.bottom.depth_at(1000.0), s.area->bottom_depth(0.0, 1000.0), 0.05);
   EXPECT_EQ(s.environment.water.at(10.0).c, 1500.0);
 }

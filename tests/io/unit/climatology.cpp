@@ -113,7 +113,8 @@ TEST(NetcdfGrid, OtherFilesAreInputErrors) {
 TEST(Climatology, MissingFilesSayHowToGetThem) {
   const TemporaryDirectory folder;
   try {
-    static_cast<void>(sample_ocean(default_ocean_sources(folder.path()), 30.5, -60.5));
+    static_cast<void>(
+        sample_ocean(default_ocean_sources(folder.path()), {.latitude = 30.5, .longitude = -60.5}));
     FAIL();
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("etopo5.cdf: found no such file, expected a netCDF file of "
@@ -121,16 +122,30 @@ TEST(Climatology, MissingFilesSayHowToGetThem) {
                                         "scripts/setup.sh --climatology"));
   }
   const OceanSources sources = default_ocean_sources(folder.path());
-  EXPECT_THROW(static_cast<void>(sample_ocean(sources, 91.0, 0.0)), InputError);
-  EXPECT_THROW(static_cast<void>(sample_ocean(sources, std::nan(""), 0.0)), InputError);
-  EXPECT_THROW(static_cast<void>(sample_ocean(sources, 0.0, 0.0, 13)), InputError);
-  EXPECT_THROW(static_cast<void>(sample_section(sources, 0.0, 0.0, 0.0, -1.0)), InputError);
+  EXPECT_THROW(static_cast<void>(sample_ocean(sources, {.latitude = 91.0})), InputError);
+  EXPECT_THROW(static_cast<void>(sample_ocean(sources, {.latitude = std::nan("")})), InputError);
+  EXPECT_THROW(static_cast<void>(sample_ocean(sources, {.when = {.month = 13}})), InputError);
+  EXPECT_THROW(static_cast<void>(sample_section(sources, {.range = -1.0})), InputError);
+}
+
+OceanRequest at(double latitude, double longitude, std::optional<int> month = {}) {
+  return {.latitude = latitude, .longitude = longitude, .when = {.month = month}};
+}
+
+/// Every 5 km, as the sections of the repository are.
+OceanRequest track(double latitude, double longitude, double bearing_deg, double range) {
+  return {.latitude = latitude,
+          .longitude = longitude,
+          .bearing_deg = bearing_deg,
+          .range = range,
+          .step = 5000.0};
 }
 
 class RealOcean : public testing::Test {
  protected:
   void SetUp() override {
-    if (!std::filesystem::exists(sources_.hydrography)) GTEST_SKIP() << "no ferret-datasets here";
+    if (!std::filesystem::exists(sources_.temperature[0].path))
+      GTEST_SKIP() << "no ferret-datasets here";
   }
   OceanSources sources_ = default_ocean_sources();
 };
@@ -138,7 +153,7 @@ class RealOcean : public testing::Test {
 // Levitus (1982) annual mean and ETOPO5, values as ncdump prints them at the grid points 30.5 N
 // 299.5 E.
 TEST_F(RealOcean, SargassoSea) {
-  const OceanSample ocean = sample_ocean(sources_, 30.5, -60.5);
+  const OceanSample ocean = sample_ocean(sources_, at(30.5, -60.5));
   EXPECT_EQ(ocean.depth.size(), 20U);
   EXPECT_EQ(ocean.depth.back(), 5000.0);
   EXPECT_EQ(ocean.water_depth, 5395.0);
@@ -148,18 +163,18 @@ TEST_F(RealOcean, SargassoSea) {
   ASSERT_TRUE(ocean.wind_speed.has_value());
   EXPECT_GT(*ocean.wind_speed, 4.0);
   EXPECT_LT(*ocean.wind_speed, 9.0);
-  EXPECT_EQ(sample_ocean(sources_, 30.5, 299.5).temperature, ocean.temperature);
+  EXPECT_EQ(sample_ocean(sources_, at(30.5, 299.5)).temperature, ocean.temperature);
   // The winds of January are not those of August; the profile has no months, and says so.
-  const OceanSample january = sample_ocean(sources_, 30.5, -60.5, 1);
-  EXPECT_GT(*january.wind_speed, *sample_ocean(sources_, 30.5, -60.5, 8).wind_speed + 2.0);
+  const OceanSample january = sample_ocean(sources_, at(30.5, -60.5, 1));
+  EXPECT_GT(*january.wind_speed, *sample_ocean(sources_, at(30.5, -60.5, 8)).wind_speed + 2.0);
   EXPECT_THAT(january.notes, testing::Contains(HasSubstr("the profile has no time axis")));
-  EXPECT_THROW(static_cast<void>(sample_ocean(sources_, 45.0, 5.0)), InputError);  // the Alps
+  EXPECT_THROW(static_cast<void>(sample_ocean(sources_, at(45.0, 5.0))), InputError);  // the Alps
 }
 
 // Westward from 30.5 N 60.5 W the abyssal plain goes on for 100 km; a transect to Africa ends at
 // its coast, and crosses a profile a degree.
 TEST_F(RealOcean, Sections) {
-  const OceanSection west = sample_section(sources_, 30.5, -60.5, 270.0, 1e5);
+  const OceanSection west = sample_section(sources_, track(30.5, -60.5, 270.0, 1e5));
   ASSERT_EQ(west.range.size(), 21U);
   EXPECT_NEAR(west.floor.front(), 5395.0, 0.5);  // 60.5 W is a grid point, but for single precision
   EXPECT_EQ(west.range.back(), 1e5);
@@ -168,7 +183,7 @@ TEST_F(RealOcean, Sections) {
   EXPECT_EQ(west.depth.front(), 0.0);
   EXPECT_GE(west.depth.back(), west.floor.front());
   EXPECT_EQ(west.speed.size(), 2 * west.depth.size());
-  const OceanSection east = sample_section(sources_, 30.5, -60.5, 80.0, 8e6);
+  const OceanSection east = sample_section(sources_, track(30.5, -60.5, 80.0, 8e6));
   EXPECT_LT(east.range.back(), 6e6);
   EXPECT_GT(east.station.size(), 30U);
   EXPECT_THAT(east.notes, testing::Contains(HasSubstr("ends at the coast")));
@@ -181,29 +196,31 @@ TEST_F(RealOcean, ASectionHoldsTheProfileOfItsStart) {
   const std::string run =
       "[run]\nfrequency = 100\n[run.source]\ndepth = 50\n[run.receivers]\ndepth = 20\n"
       "range = 1000\n";
-  const OceanSample here = sample_ocean(sources_, 30.5, -60.5);
+  const OceanSample here = sample_ocean(sources_, at(30.5, -60.5));
   std::vector<std::string> notes;
   const Environment one =
       parse_propagation_case(write_scenario_fragment(here) + run, "one.toml", {}, notes)
           .environment;
-  const Environment track =
+  const Environment section =
       parse_propagation_case(
-          write_scenario_fragment(here, sample_section(sources_, 30.5, -60.5, 270.0, 1e5)) + run,
+          write_scenario_fragment(here, sample_section(sources_, track(30.5, -60.5, 270.0, 1e5))) +
+              run,
           "track.toml", {}, notes)
           .environment;
-  ASSERT_TRUE(track.section.has_value());
-  ASSERT_TRUE(track.bottom.shape.has_value());
+  ASSERT_TRUE(section.section.has_value());
+  ASSERT_TRUE(section.bottom.shape.has_value());
   EXPECT_TRUE(is_layered(one));
   for (double z = 0.0; z <= 5395.0; z += 1.0)
-    EXPECT_NEAR(track.section->at(-1.0, z).c, one.water.at(z).c, 0.04) << z;
+    EXPECT_NEAR(section.section->at(-1.0, z).c, one.water.at(z).c, 0.04) << z;
 }
 
 TEST_F(RealOcean, TheCommittedFragmentsAreWhatTheDataSay) {
-  const OceanSample here = sample_ocean(sources_, 30.5, -60.5);
+  const OceanSample here = sample_ocean(sources_, at(30.5, -60.5));
   EXPECT_EQ(write_scenario_fragment(here), read_text_file(ASDIC_SCENARIOS "/ocean_sargasso.toml"));
-  const OceanSample bermuda = sample_ocean(sources_, 31.5, -65.5);
-  EXPECT_EQ(write_scenario_fragment(bermuda, sample_section(sources_, 31.5, -65.5, 45.0, 250e3)),
-            read_text_file(ASDIC_SCENARIOS "/ocean_bermuda.toml"));
+  const OceanSample bermuda = sample_ocean(sources_, at(31.5, -65.5));
+  EXPECT_EQ(
+      write_scenario_fragment(bermuda, sample_section(sources_, track(31.5, -65.5, 45.0, 250e3))),
+      read_text_file(ASDIC_SCENARIOS "/ocean_bermuda.toml"));
 }
 
 }  // namespace

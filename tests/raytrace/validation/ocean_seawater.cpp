@@ -83,5 +83,33 @@ TEST(Seawater, TheEquationsAgreeWhereTheSeaIs) {
   }
 }
 
+TEST(Seawater, DepthOfAPressureIsTheInverse) {
+  for (const double latitude : {0.0, 30.0, -60.0})
+    for (const double depth : {0.5, 10.0, 100.0, 1000.0, 5000.0, 11000.0})
+      EXPECT_NEAR(depth_at_pressure(gauge_pressure(depth, latitude), latitude), depth, 1e-6);
+  EXPECT_EQ(depth_at_pressure(-1e4, 30.0), 0.0);
+}
+
+// UNESCO Techn. Papers in Marine Science 44 (1983): the potential temperature of S = 40,
+// T = 40 degC at 10 000 dbar is 36.89073 degC, both on IPTS-68. Their one step of Runge and Kutta's
+// over all of the pressure is off by 4e-5.
+TEST(Seawater, TemperatureInSituOfThePotentialOne) {
+  constexpr double t68 = 1.00024;
+  EXPECT_NEAR(temperature_in_situ(36.89073 / t68, 40.0, 1e8) * t68, 40.0, 1e-4);
+  EXPECT_EQ(temperature_in_situ(5.0, 35.0, 0.0), 5.0);
+}
+
+// Check values of TEOS-10's functions of conservative and potential temperature
+// (www.teos-10.org, gsw_CT_from_pt).
+TEST(Seawater, PotentialTemperatureOfTheConservativeOne) {
+  const double salinity[] = {34.7118, 34.8915, 35.0256, 34.8472, 34.7366, 34.7324};
+  const double conservative[] = {28.809923015982083, 28.439144260767169, 22.786246608464264,
+                                 10.226165605435785, 6.827183417643142,  4.323565182322069};
+  const double potential[] = {28.7832, 28.4209, 22.7850, 10.2305, 6.8292, 4.3245};
+  for (int i = 0; i < 6; ++i)
+    EXPECT_NEAR(potential_temperature(conservative[i], salinity[i]), potential[i], 1e-9);
+  EXPECT_NEAR(practical_salinity(35.16504), 35.0, 1e-12);
+}
+
 }  // namespace
 }  // namespace asdic::detail
