@@ -108,7 +108,7 @@ int ocean(const OceanOptions& options) {
 
 void add_files(const Command& command, const char* name, std::vector<std::string>& files,
                const char* help) {
-  command.add_option(name, files, help).type_name("FILE[:VAR]").one_at_a_time().group("Data");
+  command.add_option(name, files, help).type_name("FILE").one_at_a_time().group("Data");
 }
 
 }  // namespace
@@ -169,11 +169,10 @@ void add_ocean_command(Program& program) {
             .type_name("FILE.toml");
         add_force_option(command, options->force);
         command.footer(
-            "A scenario takes it with include = \"FILE.toml\". Each option of files may be "
-            "repeated.\n"
-            "Example:  asdic ocean --latitude 30.5 --longitude -60.5 --month 3 -o ocean.toml\n"
-            "          asdic ocean --latitude 30.5 --longitude -60.5 --date 2024-03-15 \\\n"
-            "            --temperature woa23_t03.nc --salinity woa23_s03.nc --bathymetry gebco.nc");
+            "A scenario takes it with include = \"FILE.toml\". Options of files may be repeated, "
+            "and name "
+            "a variable: FILE:VARIABLE.\n"
+            "Example:  asdic ocean --latitude 30.5 --longitude -60.5 --month 3 -o ocean.toml");
         command.runs([options] { return ocean(*options); });
       });
 }

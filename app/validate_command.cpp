@@ -60,6 +60,14 @@ std::string area_text(const Scenario& s) {
   return text;
 }
 
+/// Where on the Earth the map is, and of what time its ocean.
+std::string place_text(const std::optional<OceanOrigin>& origin) {
+  if (!origin) return "";
+  return fmt::format("place      {:g} N {:g} E is the map's [0, 0]{}\n", degrees(origin->latitude),
+                     degrees(origin->longitude),
+                     origin->time.empty() ? "" : "; its ocean: " + origin->time);
+}
+
 /// Where the transect lies along which the ocean varies.
 std::string transect_text(const PingSimulator& simulator) {
   const Scenario& s = simulator.scenario();
@@ -208,8 +216,8 @@ int validate_sonar(const ValidateOptions& choice, const TomlValue& document) {
   print(emphasised(scenario.title.empty() ? scenario.path : scenario.title) + '\n');
   print(environment_text(scenario.environment, simulator.pulse().centre_frequency(),
                          scenario.wind_speed) +
-        transect_text(simulator) + sonar_text(simulator) + size_text(simulator) +
-        memory_text(memory, "a ping"));
+        place_text(scenario.origin) + transect_text(simulator) + sonar_text(simulator) +
+        size_text(simulator) + memory_text(memory, "a ping"));
   for (const std::string& note : scenario.notes) print("warning: " + note + '\n');
   print(choice.path + ": good\n");
   return 0;

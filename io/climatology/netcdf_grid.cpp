@@ -22,6 +22,7 @@ namespace {
 using climatology::lower;
 
 constexpr std::size_t longest_axis = 10'000'000;
+constexpr std::size_t chunk_cache = 128U << 20U;  // [bytes]
 constexpr std::size_t largest_piece = 1'000'000;  // values that are read at a time
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
@@ -197,6 +198,8 @@ void VariableReader::find(const std::vector<std::string>& names) {
       variable_.flag_meanings = file_.text(id, "flag_meanings");
       variable_.flag_values = file_.numbers(id, "flag_values");
       read_packing();
+      // Values are asked for one by one: a chunk that is unpacked stays. Not of older formats.
+      static_cast<void>(nc_set_var_chunk_cache(file_.id(), id_, chunk_cache, 1009, 0.75F));
       return read_dimensions();
     }
   }

@@ -35,6 +35,7 @@ void expect_same(Scenario a, Scenario b) {
   EXPECT_EQ(settings_words(Sonar{a}), settings_words(Sonar{b}));
   EXPECT_EQ(a.environment, b.environment);
   EXPECT_EQ(a.transect, b.transect);
+  EXPECT_EQ(a.origin, b.origin);
   EXPECT_EQ(a.wind_speed, b.wind_speed);
   EXPECT_EQ(a.title, b.title);
 }

@@ -57,6 +57,47 @@ class MissingData(unittest.TestCase):
             self.assertTrue(raised.exception.file.endswith("etopo5.cdf"))
 
 
+class NamedFiles(unittest.TestCase):
+    """Of texts, which need no data of others: a grid as ESRI has it, and a CTD cast."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        (self.folder / "grid.asc").write_text("ncols 4\nnrows 4\nxllcenter -61\nyllcenter 30\ncellsize 0.5\n"
+                                              + "-900 -800 -700 -600\n" * 4)
+        (self.folder / "cast.csv").write_text("# latitude = 30.6\n# longitude = -60.5\n# date = 2024-02-03\n"
+                                              "Depth [m];Temperature [degC];Salinity\n0;20,5;36\n500;12,0;35,5\n")
+        self.files = dict(bathymetry=self.folder / "grid.asc", temperature=[str(self.folder / "cast.csv")], data="none")
+
+    def test_a_place(self):
+        found = asdic.ocean(30.5, -60.5, date="2024-02-03", **self.files)
+        self.assertEqual(found.environment.bottom.depth, 800.0)
+        self.assertEqual(list(found.environment.sound_speed.temperature), [20.5, 12.0])
+        origin = found.environment.origin
+        self.assertEqual((origin.latitude_deg, origin.longitude_deg, origin.time), (30.5, -60.5, "2024-02-03"))
+        self.assertEqual([source["name"] for source in found.to_dict()["environment"]["origin"]["source"]],
+                         ["cast.csv", "grid.asc"])
+        self.assertIn("11 km away", " ".join(found.notes))
+
+    def test_a_track_by_its_grid(self):
+        import datetime
+        found = asdic.ocean(30.5, -60.9, date=datetime.date(2024, 2, 3), bearing_deg=90.0, range=100e3, **self.files)
+        self.assertGreater(len(found.environment.bottom.shape.range), 2)
+        self.assertLess(found.environment.bottom.shape.depth[-1], 720.0)
+        with self.assertRaisesRegex(asdic.InputError, "grid.asc: elevation: found 10 N") as raised:
+            asdic.ocean(10.0, -60.0, **self.files)
+        self.assertEqual(raised.exception.file, str(self.folder / "grid.asc"))
+
+    def test_an_area(self):
+        file = self.folder / "place.toml"
+        found = asdic.ocean(30.6, -60.4, area=60e3, output=file, **self.files)
+        self.assertEqual(found.to_toml(), file.read_text())
+        self.assertTrue((self.folder / "place.nc").exists())
+        with self.assertRaisesRegex(asdic.InputError, "output"):
+            asdic.ocean(30.6, -60.4, area=60e3, **self.files)
+
+
 class Profiles(unittest.TestCase):
     def test_a_table_is_linear_between_its_samples(self):
         s = asdic.Scenario(sound_speed=[[0.0, 1520.0], [100.0, 1500.0]], bathymetry=100.0)
