@@ -144,6 +144,7 @@ int info(const std::string& path) {
                     rate > 0.0 ? static_cast<double>(file.samples()) / rate : 0.0));
   print(pulses(file) + makers(file));
   print(fmt::format("scenario     sha256 {}, seed {}\n", root("scenario_sha256"), root("seed")));
+  print(place_text(file.file(), 13));
   if (file.file().has_attribute("", "overrides"))
     print(fmt::format("changed by   {}\n", root("overrides")));
   if (file.file().has_attribute("", "warnings"))

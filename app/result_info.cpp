@@ -10,6 +10,7 @@
 
 #include "app/console.h"
 #include "app/field_output.h"
+#include "io/hdf5/environment_group.h"
 #include "io/result/result_file.h"
 #include "io/wav/wav.h"
 #include "raytrace/cases/beam_error_text.h"
@@ -112,6 +113,7 @@ std::string origin(const Hdf5File& file) {
     text += fmt::format("scenario   sha256 {}\n", root("scenario_sha256"));
   if (file.has_attribute("", "overrides"))
     text += fmt::format("changed by {}\n", root("overrides"));
+  text += place_text(file, 11);
   return text;
 }
 
@@ -171,6 +173,18 @@ int wav_info(const std::string& path) {
   print(wav.has_scale ? fmt::format("full scale {:.6g} Pa\n", wav.scale.pascal_per_unit)
                       : "full scale unknown: no " + path + ".json\n");
   return 0;
+}
+
+std::string place_text(const Hdf5File& file, int width) {
+  const auto origin = read_origin_attributes(file);
+  if (!origin) return "";
+  const auto rounded = [](double degree) { return std::round(1e6 * degree) / 1e6; };
+  std::string text = fmt::format("{:<{}}{} N {} E is the map's [0, 0]{}\n", "place", width,
+                                 rounded(origin->latitude_deg), rounded(origin->longitude_deg),
+                                 origin->time.empty() ? "" : "; its ocean: " + origin->time);
+  for (const std::string& source : origin->sources)
+    text += fmt::format("{:<{}}{}\n", "ocean", width, source);
+  return text;
 }
 
 }  // namespace asdic::detail::app

@@ -247,7 +247,8 @@ Cast made_cast(CastRows rows, const std::string& where, double latitude) {
   const bool speeds = std::all_of(levels.begin(), levels.end(),
                                   [](const Level& level) { return !std::isnan(level.c); });
   for (const Level& level : levels) {
-    if (!cast.depth.empty() && level.z < cast.depth.back() + 0.01) continue;
+    constexpr double apart = 0.15;  // files have depths to 0.1 m
+    if (!cast.depth.empty() && level.z < cast.depth.back() + apart) continue;
     cast.depth.push_back(level.z);
     if (temperature && salinity) {
       cast.temperature.push_back(level.t);

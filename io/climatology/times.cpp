@@ -192,9 +192,9 @@ TimeChoice of_date(const std::vector<NetcdfGrid>& files, const std::vector<Step>
   const Step& nearest = next == steps.end() ? steps.back() : steps.front();
   if (std::abs(nearest.days - day) > 31.0) throw no_such_time(files, steps, {.date = date});
   TimeChoice choice = mean_of({nearest}, 0, "");
-  choice.said = "the nearest time, " + iso(nearest.at) + ", " +
-                to_text(std::round(10.0 * std::abs(nearest.days - day)) / 10.0) + " days from " +
-                iso(date);
+  const double apart = std::round(10.0 * std::abs(nearest.days - day)) / 10.0;
+  choice.said = "the nearest time, " + iso(nearest.at) + ", " + to_text(apart) +
+                (apart == 1.0 ? " day from " : " days from ") + iso(date);
   return choice;
 }
 

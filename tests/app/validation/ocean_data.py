@@ -701,6 +701,8 @@ class Guide(Folder):
             done = subprocess.run(["bash", "-euc", block], cwd=self.folder, capture_output=True, text=True,
                                   env={**os.environ, "PATH": f"{Path(ASDIC).parent}:{os.environ['PATH']}"})
             self.assertEqual(done.returncode, 0, block + done.stdout + done.stderr)
+        self.assertIn("33.7 N -63 E is the map's [0, 0]; its ocean: 2024-03-15T06:00", done.stdout)
+        self.assertIn("temperature, salinity: hycom_20240315.nc", done.stdout)
         place = tomllib.loads((self.folder / "place.toml").read_text())["environment"]
         water = place["sound_speed"]
         z = np.array(water["depth"])
