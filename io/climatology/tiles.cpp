@@ -205,11 +205,11 @@ Tiles::Tiles(const std::vector<DataFile>& files, const GriddedQuantity& quantity
       same->grids.push_back(std::move(grid));
       continue;
     }
-    Tile tile{.rule = rule};
+    Tile& tile = tiles_.emplace_back();
+    tile.rule = rule;
     tile.step_east = mean_step(grid.eastings());
     tile.step_north = mean_step(grid.northings());
     tile.grids.push_back(std::move(grid));
-    tiles_.push_back(std::move(tile));
   }
   for (Tile& tile : tiles_) {
     try {
