@@ -103,32 +103,51 @@ ordered_json json_of(const Arrivals& arrivals) {
 
 std::string paths_table(const Arrivals& arrivals) {
   if (arrivals.empty()) return {};
-  Table table({{"path"},
-               {"kind"},
-               {"launch", "deg"},
-               {"arrival", "deg"},
-               {"delay", "s"},
-               {"level", "dB"},
-               {"phase", "deg"},
-               {"spreading", "dB"},
-               {"absorption", "dB"},
-               {"reflection", "dB"},
-               {"scattered", "dB"},
-               {"turns"},
-               {"caustics"},
-               {"bounces", "deg", true}});
+  const bool turned = std::any_of(arrivals.begin(), arrivals.end(), [](const Arrival& a) {
+    return a.launch_deflection != 0.0 || a.arrival_deflection != 0.0;
+  });
+  std::vector<Table::Column> columns = {{"path"},
+                                        {"kind"},
+                                        {"launch", "deg"},
+                                        {"arrival", "deg"},
+                                        {"delay", "s"},
+                                        {"level", "dB"},
+                                        {"phase", "deg"},
+                                        {"spreading", "dB"},
+                                        {"absorption", "dB"},
+                                        {"reflection", "dB"},
+                                        {"scattered", "dB"},
+                                        {"turns"},
+                                        {"caustics"},
+                                        {"bounces", "deg", true}};
+  constexpr std::ptrdiff_t after_angles = 4;
+  if (turned)  // in three dimensions
+    columns.insert(columns.begin() + after_angles,
+                   {{"leaves aside", "deg"}, {"comes aside", "deg"}});
+  Table table(std::move(columns));
   for (std::size_t i = 0; i < arrivals.size(); ++i) {
     const Arrival& a = arrivals[i];
-    table.row(
-        {std::to_string(i), name_of(a.kind), number(degrees(a.launch_elevation), 3),
-         number(degrees(a.arrival_elevation), 3), number(a.delay, 5),
-         number(db_from_amplitude(std::abs(a.amplitude)), 2),
-         number(degrees(std::arg(a.amplitude)), 1), number(-db_from_amplitude(a.spreading), 2),
-         number(a.absorption_db, 2), number(-db_from_amplitude(std::abs(a.reflection)), 2),
-         a.scattered > 0.0 ? number(scattered_db(a), 2) : "-",
-         std::to_string(a.upper_turns + a.lower_turns), std::to_string(a.caustics), bounces_of(a)});
+    std::vector<std::string> cells = {std::to_string(i),
+                                      name_of(a.kind),
+                                      number(degrees(a.launch_elevation), 3),
+                                      number(degrees(a.arrival_elevation), 3),
+                                      number(a.delay, 5),
+                                      number(db_from_amplitude(std::abs(a.amplitude)), 2),
+                                      number(degrees(std::arg(a.amplitude)), 1),
+                                      number(-db_from_amplitude(a.spreading), 2),
+                                      number(a.absorption_db, 2),
+                                      number(-db_from_amplitude(std::abs(a.reflection)), 2),
+                                      a.scattered > 0.0 ? number(scattered_db(a), 2) : "-",
+                                      std::to_string(a.upper_turns + a.lower_turns),
+                                      std::to_string(a.caustics),
+                                      bounces_of(a)};
+    if (turned)
+      cells.insert(cells.begin() + after_angles, {number(degrees(a.launch_deflection), 3),
+                                                  number(degrees(a.arrival_deflection), 3)});
+    table.row(std::move(cells));
   }
-  return table.text();
+  return table.text() +
+         (turned ? "aside: of travel, clockwise from the straight line between the ends\n" : "");
 }
 
 std::string arrivals_legend(double frequency) {

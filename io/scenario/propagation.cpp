@@ -37,8 +37,7 @@ PropagationCase of_ocean_and_run(const TomlValue& document, const std::filesyste
     static_cast<void>(environment.has(of_a_sonar));
   run.origin = scenario::read_origin(environment);
   scenario::OceanReading reading{.folder = folder, .frequency = run.frequency, .notes = notes};
-  std::optional<scenario::AreaReading> area =
-      scenario::read_area(environment, reading, run.origin);
+  std::optional<scenario::AreaReading> area = scenario::read_area(environment, reading, run.origin);
   if (area) reading.area = &*area;
   run.environment = scenario::read_ocean(environment, reading);
   if (area) {

@@ -98,7 +98,7 @@ struct LiteralSettings {
 /// A run of the propagation model: everything that goes in. Plain data; SI units and radians.
 struct PropagationCase {
   std::string title;
-  double frequency = 1000.0;  ///< [Hz]
+  double frequency = 1000.0;          ///< [Hz]
   Environment environment;            ///< along the transect
   std::optional<OceanOrigin> origin;  ///< where on the Earth it is, and what it was made of
   /// The area that it is cut out of: from a place on the map along a bearing.

@@ -365,15 +365,20 @@ std::string scattering_energy(const Scenario& scenario) {
 }
 
 std::string planes_beside_volume(const Scenario& scenario) {
-  if (scenario.propagation.dimension != 3 || (!scenario.area && is_layered(scenario.environment)))
-    return "";
+  const Environment& ocean = scenario.environment;
+  if (scenario.propagation.dimension != 3 || (!scenario.area && is_layered(ocean))) return "";
   std::string text =
       "propagation.dimension: echoes, direct sound and ships' noise are turned sideways by floor "
       "and water; ";
-  if (scenario.reverberation.enabled) text += "reverberation keeps to vertical planes, and so do ";
-  return text + "the numbers of bounces that \"auto\" finds and the places that a receiver " +
-         "makes of bearings" + (scenario.reverberation.enabled ? "" : " keep to vertical planes") +
-         "; waves where no ray goes are left out";
+  if (scenario.reverberation.enabled) text += "reverberation, ";
+  text +=
+      "the numbers of bounces that \"auto\" finds and the places that a receiver makes of bearings "
+      "keep to vertical planes; waves where no ray goes are left out";
+  const std::optional<BoundaryShape>& floor = ocean.bottom.shape;
+  if (floor && floor->ranges().size() > 2 &&
+      floor->interpolation() == ShapeInterpolation::piecewise_linear)
+    text += "; where facets of the floor meet a faint path may be missing";
+  return text;
 }
 
 }  // namespace asdic::detail::checks

@@ -53,7 +53,7 @@ TEST(Warnings, WhatStaysInPlanesBesideThreeDimensions) {
               testing::Contains(HasSubstr("propagation.dimension: echoes, direct sound and ships' "
                                           "noise are turned sideways")));
   EXPECT_THAT(of({slope, three, "reverberation={enabled=true}"}),
-              testing::Contains(HasSubstr("reverberation keeps to vertical planes")));
+              testing::Contains(HasSubstr("reverberation, the numbers of bounces")));
 }
 
 TEST(Warnings, AProfileThatDoesNotCoverTheWater) {  // of 0 to 1000 m

@@ -124,7 +124,9 @@ TEST(ThreeDimensions, PatternsAreThoseOfTheWayARayLeaves) {
         std::remainder(echo.response.bearing - out->bearing - path.launch_deflection, 2.0 * pi),
         0.0, 1e-12);
     // rays up the slope leave towards the shore, against the straight line
-    if (path.bottom_bounces > 0) EXPECT_GT(std::abs(path.launch_deflection), 1e-3);
+    if (path.bottom_bounces > 0) {
+      EXPECT_GT(std::abs(path.launch_deflection), 1e-3);
+    }
   }
 }
 
@@ -156,7 +158,8 @@ TEST(ThreeDimensions, DelaysOfMovingTargetsAreThoseOfAFixedPoint) {
     const Arrival& home = record.legs[1].arrivals[std::size_t(echo.returning)];
     const Vec3 source = s.platforms[0].track.at(0.0).position;
     double struck = out.delay, received = struck + home.delay;
-    for (int i = 0; i < 4; ++i) struck = delay(source, s.targets[0].track.at(struck).position, out);
+    for (int round = 0; round < 4; ++round)
+      struck = delay(source, s.targets[0].track.at(struck).position, out);
     const Vec3 at = s.targets[0].track.at(struck).position;
     for (int round = 0; round < 3; ++round)
       received = struck + delay(at, s.platforms[0].track.at(received).position, home);
