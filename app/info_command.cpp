@@ -5,6 +5,7 @@
 #include <memory>
 #include <set>
 
+#include "app/area_info.h"
 #include "app/command.h"
 #include "app/console.h"
 #include "app/ping_report.h"
@@ -57,9 +58,10 @@ void check_kind_of_file(const std::string& path) {
     return;
   throw InputError({.where = path,
                     .got = "a file that is not HDF5",
-                    .expected = "HDF5 of asdic ping, process, study, merge, field, arrivals or "
-                                "rays, or .shd, .arr, .ray, .wav (of a scenario asdic validate "
-                                "tells)"});
+                    .expected =
+                        "HDF5 of asdic ping, process, study, merge, area, field, arrivals or "
+                        "rays, or .shd, .arr, .ray, .wav (of a scenario asdic validate "
+                        "tells)"});
 }
 
 /// Who made it, when and with what.
@@ -127,6 +129,7 @@ std::string summary(const PingFile& file) {
 int info(const std::string& path) {
   if (is_study_file(path)) return study_info(path);
   if (is_propagation_file(path)) return propagation_info(path);
+  if (is_area_file(path)) return area_info(path);
   if (std::filesystem::path(path).extension() == ".wav") return wav_info(path);
   check_kind_of_file(path);
   const PingFile file(path);
@@ -179,8 +182,8 @@ void add_info_command(Program& program) {
         command
             .add_option(
                 "FILE", options->path,
-                "HDF5 of asdic ping (NAME.XXXX.part too), process, study, merge, field, arrivals "
-                "or rays, or .shd, .arr, .ray, .wav")
+                "HDF5 of asdic ping (NAME.XXXX.part too), process, study, merge, area, field, "
+                "arrivals or rays, or .shd, .arr, .ray, .wav")
             .required();
         command.add_flag(
             "--check", options->check,

@@ -15,6 +15,7 @@ std::vector<CommandGroup> overview() {
   return {{"Simulate a sonar",
            {{"ping", "what every phone receives, into an HDF5 file"},
             {"process", "what a sonar makes of it: detections, places, tracks"},
+            {"area", "what it sees all round: echo, reverberation, detection"},
             {"study", "many pings with drawn conditions: probability of detection"},
             {"merge", "put the parts of a study together"},
             {"recover", "a ping file out of what a killed run left"},
@@ -66,6 +67,7 @@ int run(int argc, char** argv) {
   add_explain_command(program);
   add_compare_command(program);
   add_field_command(program);
+  add_area_command(program);
   add_process_command(program);
   add_study_command(program);
   add_merge_command(program);

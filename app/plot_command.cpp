@@ -2,6 +2,7 @@
 #include <memory>
 #include <optional>
 
+#include "app/area_info.h"
 #include "app/command.h"
 #include "app/picture_source.h"
 #include "app/pictures.h"
@@ -62,7 +63,7 @@ void check_drawable(const std::filesystem::path& file) {
   const auto wrong = [&](const std::string& got) {
     return InputError({.where = file.string(),
                        .got = got,
-                       .expected = "a file to draw: HDF5 of asdic ping, study, merge, field, "
+                       .expected = "a file to draw: HDF5 of asdic ping, area, study, merge, field, "
                                    "arrivals or rays, or .shd, .arr, .ray, or a scenario, .toml"});
   };
   std::error_code error;
@@ -109,6 +110,8 @@ int plot(const PlotOptions& options) {
     if (pictures.empty()) pictures = folder_beside(given);
   } else if (is_study_file(given)) {
     study::StudyFile(given).check_parts();
+  } else if (is_area_file(given)) {
+    static_cast<void>(read_coverage_summary(given));
   } else if (is_ping_file(given)) {
     static_cast<void>(PingFile(given));
   } else {
@@ -135,14 +138,15 @@ int plot(const PlotOptions& options) {
 void add_plot_command(Program& program) {
   program.add_command(
       "plot",
-      "Draw the pictures of a ping file, a study, a field, arrivals or rays, or of a scenario "
-      "before it runs.",
+      "Draw the pictures of a ping file, an area, a study, a field, arrivals or rays, or of a "
+      "scenario before it runs.",
       [](const Command& command) {
         auto options = std::make_shared<PlotOptions>();
         command
-            .add_option("FILE", options->scenario.path,
-                        "HDF5 file of asdic ping, study, field, arrivals or rays; .shd, .arr or "
-                        ".ray; or a scenario, .toml")
+            .add_option(
+                "FILE", options->scenario.path,
+                "HDF5 file of asdic ping, area, study, field, arrivals or rays; .shd, .arr or "
+                ".ray; or a scenario, .toml")
             .required();
         command
             .add_option("-o,--output", options->folder,

@@ -161,6 +161,12 @@ int propagation_info(const std::string& path) {
   return 0;
 }
 
+std::string result_file_line(const std::string& path, std::string_view kind) {
+  return file_line(path, kind);
+}
+
+std::string result_origin(const std::string& path) { return origin(Hdf5File::open(path)); }
+
 int wav_info(const std::string& path) {
   const WavContent wav = read_wav_content(path);
   const double rate = wav.scale.sample_rate;

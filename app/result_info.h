@@ -1,5 +1,6 @@
 #pragma once
 #include <string>
+#include <string_view>
 
 #include "io/hdf5/hdf5_file.h"
 
@@ -15,6 +16,11 @@ namespace asdic::detail::app {
 
 /// What it holds, on standard output. \return the exit status
 int propagation_info(const std::string& path);
+
+/// A line that tells a file's name, size and kind.
+[[nodiscard]] std::string result_file_line(const std::string& path, std::string_view kind);
+/// Who made an HDF5 file of results, of what scenario.
+[[nodiscard]] std::string result_origin(const std::string& path);
 
 /// The same of a WAV file of `asdic export`.
 int wav_info(const std::string& path);

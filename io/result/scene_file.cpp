@@ -85,12 +85,7 @@ void write_phones(Hdf5File& file, const Scenario& scenario) {
 
 }  // namespace
 
-void write_scene(const std::filesystem::path& path, const Scenario& scenario) {
-  Hdf5File file = Hdf5File::create(path);
-  write_filetype(file, "asdic scene", "1.0");
-  file.set_attribute("", "title", scenario.title);
-  file.set_attribute("", "scenario_sha256", sha256(scenario.text));
-  write_origin(file, attributes_of(scenario.origin));
+void write_tracks(Hdf5File& file, const Scenario& scenario) {
   Tracks tracks(file, end_of(scenario.pings));
   tracks.write("platforms", names_of(scenario.platforms), [&](std::size_t i, double time) -> Vec3 {
     return scenario.platforms[i].track.at(time).position;
@@ -105,6 +100,15 @@ void write_scene(const std::filesystem::path& path, const Scenario& scenario) {
   tracks.write("targets", names_of(scenario.targets), [&](std::size_t i, double time) -> Vec3 {
     return scenario.targets[i].track.at(time).position;
   });
+}
+
+void write_scene(const std::filesystem::path& path, const Scenario& scenario) {
+  Hdf5File file = Hdf5File::create(path);
+  write_filetype(file, "asdic scene", "1.0");
+  file.set_attribute("", "title", scenario.title);
+  file.set_attribute("", "scenario_sha256", sha256(scenario.text));
+  write_origin(file, attributes_of(scenario.origin));
+  write_tracks(file, scenario);
   write_beams(file, scenario);
   write_phones(file, scenario);
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 
+#include "io/hdf5/hdf5_file.h"
 #include "raytrace/cases/propagation_case.h"
 #include "sonar/scenario/scenario.h"
 
@@ -13,5 +14,9 @@ namespace asdic::detail {
 void write_scene(const std::filesystem::path& path, const Scenario& scenario);
 /// The same of a run without a sonar: its sea, sources and receivers.
 void write_scene(const std::filesystem::path& path, const PropagationCase& run);
+
+/// Where platforms, transmitters, arrays and targets are: groups of these names, each with `names`
+/// and `track` [things, instants, 3], until the last record ends.
+void write_tracks(Hdf5File& file, const Scenario& scenario);
 
 }  // namespace asdic::detail

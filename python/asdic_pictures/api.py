@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 
+from . import area as _area
 from . import data as _data
 from . import results as _results
 from . import scene as _scene
@@ -21,9 +22,11 @@ OF_PINGS = ("rays", "pressure", "bearing_time", "levels", "spectrogram", "matche
 PROCESSED = ("detections", "range_bearing", "ambiguity", "tracks")
 OF_RESULTS = ("transmission_loss", "arrivals", "rays")
 OF_SCENES = ("geometry", "sound_speed", "array")
+OF_AREAS = _area.ALL
 OF_ALL_ARRAYS = ("rays", "levels", "ambiguity")
 WITH_LIMITS = ("pressure", "bearing_time", "levels", "spectrogram", "matched_filter", "sweep",
-               "detections", "range_bearing", "ambiguity", "transmission_loss", "arrivals")
+               "detections", "range_bearing", "ambiguity", "transmission_loss", "arrivals",
+               *_area.MAPS, "sea_floor")
 
 
 def module(name: str):
@@ -100,6 +103,23 @@ def of_result(found, wanted: str, axes=None, *, limits=None, theme=None, **optio
         raise InputError(_source.name_of(found), reason, f"something to draw in {name}")
     with _style.look(theme):
         return tagged(draws.draw(result, axes=axes, limits=_checked(limits), **options), **result.tags)
+
+
+def of_area(name: str, source, axes=None, *, depth=None, limits=None, theme=None):
+    """A picture of what a sonar sees of the area. \param depth  of the target [m]; none: the first"""
+    found = _area.read(source)
+    if name not in OF_AREAS:
+        raise InputError("what", f'"{name}"', "one of " + ", ".join(OF_AREAS))
+    layer = 0
+    if depth is not None:
+        layer = int(abs(found.depth - depth).argmin())
+        if abs(found.depth[layer] - depth) > 0.5:
+            raise InputError("depth", f"{depth:g} m",
+                             "one of " + ", ".join(f"{d:g}" for d in found.depth))
+    if reason := _area.nothing_to_show(found, name):
+        raise InputError(_source.name_of(source), reason, f"something to draw in {name}")
+    with _style.look(theme):
+        return tagged(_area.draw(found, name, layer, axes=axes, limits=_checked(limits)), **found.tags)
 
 
 def of_scene(name: str, source, axes=None, *, limits=None, theme=None):

@@ -29,7 +29,7 @@ def arguments(argv):
     parser = argparse.ArgumentParser(prog="asdic plot", allow_abbrev=False,
                                      description="Draws the pictures of a file of asdic's.")
     parser.add_argument("file", metavar="FILE.h5",
-                        help="written by `asdic ping`, `field`, `arrivals`, `rays` or `study`")
+                        help="written by `asdic ping`, `area`, `field`, `arrivals`, `rays` or `study`")
     parser.add_argument("-o", "--output", metavar="DIR",
                         help="folder for the pictures (default: FILE without .h5); with --against "
                              "the picture")
@@ -210,6 +210,27 @@ def draw_result(options, wish: Wishes) -> None:
         wish.write(fig, f"{name}_{source + 1}" if sources > 1 else name, module.TITLE)
 
 
+def draw_area(options, wish: Wishes) -> None:
+    """Maps of what a sonar sees, one for each depth of the target; the sea floor."""
+    from . import area
+
+    found = area.read(options.file)
+    found.title = found.title or short_name((options.names or [options.file])[0])
+    wish.check_names(api.OF_AREAS)
+    for name in api.OF_AREAS:
+        if not wish.wants(name):
+            continue
+        if reason := area.nothing_to_show(found, name):
+            wish.leave_out(name, reason)
+            continue
+        told = area.MAPS[name].title if name in area.MAPS else area.OTHERS[name]
+        several = name in area.MAPS and found.depth.size > 1
+        for k, depth in enumerate(found.depth if several else found.depth[:1]):
+            fig = api.of_area(name, found, depth=depth, limits=wish.limits_for(name),
+                              theme=wish.theme)
+            wish.write(fig, f"{name}_{k + 1}" if several else name, told)
+
+
 def draw_scene(options, wish: Wishes) -> None:
     """A scenario before it runs."""
     from . import scene, scene_pictures
@@ -285,6 +306,9 @@ def run(argv=None) -> int:
     kind = filetype(options.file)
     if kind == "asdic scene":
         draw_scene(options, wish)
+        return 0
+    if kind == "asdic area":
+        draw_area(options, wish)
         return 0
     if kind == "asdic study":
         draw_study(options, wish)

@@ -134,6 +134,16 @@ def colour(target: int) -> str:
     return TARGETS[target % len(TARGETS)]
 
 
+def colours(count: int) -> list:
+    """Shades of the common map, one after the other."""
+    return [matplotlib.colormaps[MAP](x) for x in np.linspace(0.0, 0.9, count)]
+
+
+def flat_map(shade):
+    """A map of one colour: of cells that are all alike."""
+    return matplotlib.colors.ListedColormap([shade])
+
+
 # ------------------------------------------------------------------------------------- figures
 
 

@@ -12,6 +12,7 @@
 #include "raytrace/math/monotone_root.h"
 #include "raytrace/ocean/tube_amplitude.h"
 #include "raytrace/tracing/cell_hits.h"
+#include "raytrace/tracing/level_hits.h"
 
 namespace asdic::detail {
 namespace {
@@ -248,19 +249,19 @@ std::vector<CellPath> follow_branches(const EigenraySolver& solver, double sourc
   return found;
 }
 
-/// Of any other: between neighbours of a fan of marched rays.
-std::vector<CellPath> march_fan(const EigenraySolver& solver, double source_depth,
-                                const GroundLevel& level, const GroundGrid& grid, double max_range,
-                                double frequency, const PathLimits& limits, const StopPoint& stop) {
-  stop();
-  const FanLimits fan{.lowest = -limits.max_launch_angle,
-                      .highest = limits.max_launch_angle,
-                      .max_surface_bounces = limits.max_surface_bounces,
-                      .max_bottom_bounces = limits.max_bottom_bounces,
-                      .faintest = limits.faintest};
+FanLimits fan_limits(const PathLimits& limits) {
+  return {.lowest = -limits.max_launch_angle,
+          .highest = limits.max_launch_angle,
+          .max_surface_bounces = limits.max_surface_bounces,
+          .max_bottom_bounces = limits.max_bottom_bounces,
+          .faintest = limits.faintest};
+}
+
+/// Hits of marched rays as paths to cells, but for those that come home too late.
+std::vector<CellPath> paths_of(const std::vector<CellHit>& hits, const GroundGrid& grid,
+                               const PathLimits& limits) {
   std::vector<CellPath> found;
-  for (const CellHit& hit : hits_on_cells(*solver.tracer(frequency), source_depth, level, grid,
-                                          max_range, frequency, fan)) {
+  for (const CellHit& hit : hits) {
     const double range = grid.range(hit.cell);
     if (hit.delay + limits.home_slowness * range > limits.max_delay) continue;
     found.push_back({hit.cell,
@@ -276,6 +277,16 @@ std::vector<CellPath> march_fan(const EigenraySolver& solver, double source_dept
                       .bottom_bounces = static_cast<std::uint16_t>(hit.bottom_bounces)}});
   }
   return found;
+}
+
+/// Of any other: between neighbours of a fan of marched rays.
+std::vector<CellPath> march_fan(const EigenraySolver& solver, double source_depth,
+                                const GroundLevel& level, const GroundGrid& grid, double max_range,
+                                double frequency, const PathLimits& limits, const StopPoint& stop) {
+  stop();
+  return paths_of(hits_on_cells(*solver.tracer(frequency), source_depth, level, grid, max_range,
+                                frequency, fan_limits(limits)),
+                  grid, limits);
 }
 
 bool is_finite(const BoundaryPath& p) {
@@ -295,6 +306,18 @@ void check_finite(std::span<const CellPath> found, double source_depth) {
         std::to_string(found.size()) +
         " paths to a boundary are no numbers; this is a fault of asdic, please "
         "report it with the scenario");
+}
+
+/// By counting, stable: the order within a cell is the order in which they were found. \param cells
+/// how many
+void put_into_cells(const std::vector<CellPath>& found, std::size_t cells,
+                    std::vector<std::uint32_t>& first, std::vector<BoundaryPath>& paths) {
+  first.assign(cells + 1, 0);
+  for (const CellPath& p : found) ++first[p.cell + 1];
+  for (std::size_t i = 0; i < cells; ++i) first[i + 1] += first[i];
+  paths.resize(found.size());
+  std::vector<std::uint32_t> next(first.begin(), first.end());
+  for (const CellPath& p : found) paths[next[p.cell]++] = p.path;
 }
 
 }  // namespace
@@ -320,16 +343,26 @@ BoundaryPaths boundary_paths(const EigenraySolver& solver, double source_depth,
   check_finite(found, source_depth);
   BoundaryPaths ground;
   ground.grid_ = own;
-  const std::size_t cells = own.count(max_range);
-  ground.first_.assign(cells + 1, 0);
-  for (const CellPath& p : found)
-    ++ground.first_[p.cell +
-                    1];  // counting sort, stable: the order within a cell is the order of branches
-  for (std::size_t i = 0; i < cells; ++i) ground.first_[i + 1] += ground.first_[i];
-  ground.paths_.resize(found.size());
-  std::vector<std::uint32_t> next(ground.first_.begin(), ground.first_.end());
-  for (const CellPath& p : found) ground.paths_[next[p.cell]++] = p.path;
+  put_into_cells(found, own.count(max_range), ground.first_, ground.paths_);
   return ground;
+}
+
+std::vector<BoundaryPaths> mean_paths(const EigenraySolver& solver, double source_depth,
+                                      std::span<const GroundLevel> levels, const GroundGrid& grid,
+                                      double max_range, double frequency, const PathLimits& limits,
+                                      int rays) {
+  std::vector<BoundaryPaths> all;
+  for (const std::vector<CellHit>& hits :
+       hits_on_levels(*solver.tracer(frequency), source_depth, levels, grid, max_range, frequency,
+                      fan_limits(limits), rays)) {
+    const std::vector<CellPath> found = paths_of(hits, grid, limits);
+    check_finite(found, source_depth);
+    BoundaryPaths ground;
+    ground.grid_ = grid;
+    put_into_cells(found, grid.count(max_range), ground.first_, ground.paths_);
+    all.push_back(std::move(ground));
+  }
+  return all;
 }
 
 }  // namespace asdic::detail

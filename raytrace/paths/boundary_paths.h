@@ -53,6 +53,9 @@ class BoundaryPaths {
   friend BoundaryPaths boundary_paths(const EigenraySolver&, double, const GroundLevel&,
                                       const GroundGrid&, double, double, const PathLimits&,
                                       const StopPoint&);
+  friend std::vector<BoundaryPaths> mean_paths(const EigenraySolver&, double,
+                                               std::span<const GroundLevel>, const GroundGrid&,
+                                               double, double, const PathLimits&, int);
 
   GroundGrid grid_;
   std::vector<std::uint32_t> first_;  // [cells + 1]
@@ -82,5 +85,12 @@ inline constexpr int all_cycles = 63;
                                            const GroundLevel& level, const GroundGrid& grid,
                                            double max_range, double frequency,
                                            const PathLimits& limits, const StopPoint& stop = {});
+
+/// The same to several levels of a plane that is not layered out of one fan of so many rays, right
+/// as means over cells (raytrace/tracing/level_hits.h). \param grid  without fine cells
+/// \return [levels]
+[[nodiscard]] std::vector<BoundaryPaths> mean_paths(
+    const EigenraySolver& solver, double source_depth, std::span<const GroundLevel> levels,
+    const GroundGrid& grid, double max_range, double frequency, const PathLimits& limits, int rays);
 
 }  // namespace asdic::detail

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "raytrace/parallel/parallel.h"
 
@@ -154,6 +155,26 @@ MemoryNeed BoundaryFans::need(const Settings& settings) const {
               "max_bottom_bounces) or a shorter record"};
 }
 
+/// How the cells of a level of a plane answer.
+std::vector<CellFacet> BoundaryFans::facets_of(const Plane& plane, const GroundLevel& level,
+                                               const Environment& ocean,
+                                               const BoundaryPaths& paths) const {
+  if (!level.boundary) return {};
+  const bool surface = *level.boundary == BoundaryKind::surface;
+  if (!paths_.area())
+    return facets_over_transect(surface ? ocean.surface : ocean.bottom, plane.cos_beta, paths);
+  return (surface ? winds_over_area : facets_over_area)(*paths_.area(), plane, paths);
+}
+
+FanPlane BoundaryFans::plane_of(const Vec3& place, const Plane& plane, const GroundLevel& level,
+                                std::shared_ptr<const BoundaryPaths> paths) const {
+  FanPlane made{.paths = std::move(paths), .ends = {}, .facets = {}};
+  made.ends = ends_of(*made.paths, paths_.speed_at(place));
+  if (!paths_.layered())
+    made.facets = facets_of(plane, level, paths_.solver(plane)->environment(), *made.paths);
+  return made;
+}
+
 BoundaryFan BoundaryFans::trace(const Vec3& place, const GroundLevel& level,
                                 const Settings& settings, const StopPoint& stop) const {
   const auto height = [&](const Environment& ocean) {
@@ -188,14 +209,7 @@ BoundaryFan BoundaryFans::trace(const Vec3& place, const GroundLevel& level,
     const Environment& ocean = solver->environment();
     fan.planes[i].paths = ground(*solver);
     fan.planes[i].ends = ends_of(*fan.planes[i].paths, speed);
-    if (!level.boundary) return;
-    const bool surface = *level.boundary == BoundaryKind::surface;
-    if (mirrored)
-      fan.planes[i].facets = facets_over_transect(surface ? ocean.surface : ocean.bottom,
-                                                  plane.cos_beta, *fan.planes[i].paths);
-    else
-      fan.planes[i].facets = (surface ? winds_over_area : facets_over_area)(*paths_.area(), plane,
-                                                                            *fan.planes[i].paths);
+    fan.planes[i].facets = facets_of(plane, level, ocean, *fan.planes[i].paths);
   });
   return fan;
 }

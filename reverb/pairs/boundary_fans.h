@@ -86,8 +86,15 @@ class BoundaryFans {
                                                           const Settings& settings,
                                                           bool* known = nullptr) const;
 
+  /// A plane through a place, of paths that were found in it by themselves.
+  [[nodiscard]] FanPlane plane_of(const Vec3& place, const Plane& plane, const GroundLevel& level,
+                                  std::shared_ptr<const BoundaryPaths> paths) const;
+
  private:
   struct Entry;
+  [[nodiscard]] std::vector<CellFacet> facets_of(const Plane& plane, const GroundLevel& level,
+                                                 const Environment& ocean,
+                                                 const BoundaryPaths& paths) const;
   [[nodiscard]] BoundaryFan trace(const Vec3& place, const GroundLevel& level,
                                   const Settings& settings, const StopPoint& stop) const;
 

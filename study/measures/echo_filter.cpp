@@ -9,10 +9,10 @@
 #include "core/geometry.h"
 #include "processing/matched_filter.h"
 #include "processing/normaliser.h"
+#include "processing/signal_excess.h"
 #include "sonar/noise/noise_spectrum.h"
 #include "sonar/scenario/sampling.h"
 #include "sonar/scenario/scenario.h"
-#include "sonar/signal/fft.h"
 #include "study/plan/no_value.h"
 
 namespace asdic::detail::study {
@@ -222,27 +222,6 @@ SampleRange part_of(const PingSimulator& simulator, const PingRecord& record) {
 }
 
 }  // namespace
-
-double noise_bandwidth(const Pulse& pulse) {
-  const double rate = 2.0 * pulse.bandwidth_40db();
-  const auto samples =
-      static_cast<std::size_t>(std::clamp(pulse.duration() * rate, 64.0, 1048576.0));
-  const ComplexFft<double> transform(fast_fft_length(2 * samples));
-  FftBuffer<std::complex<double>> x(transform.length());
-  const double step = pulse.duration() / static_cast<double>(samples);
-  for (std::size_t k = 0; k < samples; ++k) {
-    const double t = (static_cast<double>(k) + 0.5) * step;
-    x[k] = pulse.analytic(t) * std::polar(1.0, -2.0 * pi * pulse.centre_frequency() * t);
-  }
-  transform.forward(x.data());
-  double second = 0.0, fourth = 0.0;
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    const double power = std::norm(x[k]);
-    second += power;
-    fourth += power * power;
-  }
-  return second * second / fourth / (step * static_cast<double>(transform.length()));
-}
 
 SampleRange samples_for_filter(const PingSimulator& simulator, const PingRecord& record,
                                const MatchedFilterPlan& plan, int array) {

@@ -14,10 +14,6 @@ struct FilterAnswer {
   double threshold = 0.0, absent_threshold = 0.0;  ///< that the false-alarm probability asks for
 };
 
-/// (∫|S|²df)²/∫|S|⁴df [Hz]: answers of the matched filter that far apart in 1/B are independent in
-/// white noise.
-[[nodiscard]] double noise_bandwidth(const Pulse& pulse);
-
 /// y(τ) = ∫ p₊(t) s₊*(η(t − τ)) dt / ∫|s₊|² dt at the delay τ, Doppler factor η and, of a beam,
 /// slowness of the target's strongest path; over E|y|² = 2N₀/(n∫|s₊|²dt) of n phones' white noise,
 /// or over the mean of |y|² in the nearest cells that are free of echoes. A target that no path

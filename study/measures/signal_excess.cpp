@@ -5,9 +5,8 @@
 #include <complex>
 
 #include "processing/detection_threshold.h"
-#include "sonar/noise/noise_coherence.h"
+#include "processing/signal_excess.h"
 #include "sonar/noise/noise_in_guide.h"
-#include "study/measures/echo_filter.h"
 
 namespace asdic::detail::study {
 namespace {
@@ -18,19 +17,6 @@ struct Beam {
   Vec3 slowness = Vec3::Zero();    // of the echo [s/m]
   double angular_frequency = 0.0;  // at the pulse's centre [rad/s]
 };
-
-/// 10 lg of 1/(wᴴΓw), w_n = e^{−iω s·x_n}/n: what the beam keeps of the scenario's noise [dB].
-double gain_over_noise(const Beam& beam, const NoiseField& noise) {
-  const std::size_t n = beam.phones.size();
-  if (noise.coherence == NoiseCoherence::independent) return db_from_power(static_cast<double>(n));
-  const double wavenumber = beam.angular_frequency * beam.slowness.norm();
-  double kept = 0.0;
-  for (const Vec3& a : beam.phones)
-    for (const Vec3& b : beam.phones)
-      kept += std::real(noise_coherence(noise.coherence, noise.directions, a - b, wavenumber) *
-                        std::polar(1.0, beam.angular_frequency * beam.slowness.dot(a - b)));
-  return -db_from_power(kept / static_cast<double>(n * n));
-}
 
 /// 10 lg of 1/⟨|w·e^{−iω s_φ·x}|²⟩: what it keeps of sound that comes from all bearings φ alike, at
 /// the echo's own elevation [dB].
@@ -82,16 +68,16 @@ double detection_signal_excess_db(const PingSimulator& simulator, const PingReco
     if (!receiver.phone || static_cast<std::size_t>(*receiver.phone) == n)
       beam.phones.push_back(record.phones[first + n] - record.phones[first]);
 
-  const double energy = pulse.energy();
-  const double noise_gain = db_from_power(energy * pulse.bandwidth_40db()) +
-                            gain_over_noise(beam, noise_field(scenario, receiver.array));
-  const double reverberation_gain =
-      db_from_power(energy * noise_bandwidth(pulse)) + gain_over_reverberation(beam);
-  const double background =
-      db_from_power(power_from_db(received.reverberation_db - reverberation_gain) +
-                    power_from_db(received.noise_db - noise_gain));
-  return received.echo_peak_db - background -
-         detection_threshold_db(receiver.false_alarm_probability, receiver.cells);
+  const double over_noise = gain_over_noise_db(
+      beam.phones, beam.slowness, beam.angular_frequency,
+      noise_coherences(beam.phones, beam.angular_frequency * beam.slowness.norm(),
+                       noise_field(scenario, receiver.array)));
+  return signal_excess_db(
+      {.echo_db = received.echo_peak_db,
+       .reverberation_db = received.reverberation_db - gain_over_reverberation(beam),
+       .noise_db = received.noise_db - over_noise},
+      matched_filter_gain(pulse),
+      detection_threshold_db(receiver.false_alarm_probability, receiver.cells));
 }
 
 }  // namespace asdic::detail::study

@@ -50,6 +50,35 @@ TEST(DetectionThreshold, OverSwerling1ItIsTheClosedForm) {
     }
 }
 
+// The law of the fluctuation in the weights is the mean over it: of Swerling 1 against its closed
+// forms, of Swerling 3 (four degrees of freedom, density 4S/s²·e^{−2S/s}) by Simpson's rule.
+TEST(DetectionThreshold, OfAnEchoThatFluctuates) {
+  EXPECT_EQ(fluctuation_shape(Fluctuation::swerling_2), 1.0);
+  EXPECT_EQ(fluctuation_shape(Fluctuation::swerling_3), 2.0);
+  EXPECT_TRUE(std::isinf(fluctuation_shape(Fluctuation::none)));
+  for (const double p : {1e-6, 1e-3})
+    for (const double mean : {0.5, 10.0, 100.0}) {
+      EXPECT_NEAR(detection_probability(mean, p, infinity, 1.0), std::pow(p, 1.0 / (1.0 + mean)),
+                  1e-12);
+      for (const double m : {6.0, 24.0}) {
+        EXPECT_NEAR(detection_probability(mean, p, m, 1.0),
+                    std::pow(1.0 + (std::pow(p, -1.0 / m) - 1.0) / (1.0 + mean), -m), 1e-12);
+        constexpr int steps = 4000;
+        double sum = 0.0;
+        for (int i = 0; i <= steps; ++i) {
+          const double t = 1.0 / steps * i, u = 40.0 * t * t * t;
+          const double weight = i == 0 || i == steps ? 1.0 : i % 2 == 1 ? 4.0 : 2.0;
+          sum += weight * 120.0 * t * t * 4.0 * u * std::exp(-2.0 * u) *
+                 detection_probability(mean * u, p, m);
+        }
+        EXPECT_NEAR(detection_probability(mean, p, m, 2.0), sum / steps / 3.0, 1e-7);
+      }
+    }
+  EXPECT_NEAR(detection_probability(power_from_db(detection_threshold_db(1e-4, 24.0, 0.5, 1.0)),
+                                    1e-4, 24.0, 1.0),
+              0.5, 1e-9);
+}
+
 TEST(DetectionThreshold, IsReachedHalfOfTheTime) {
   for (const double p : {1e-9, 1e-6, 1e-4, 1e-2}) {
     for (const double cells : {8.0, 24.0, infinity})

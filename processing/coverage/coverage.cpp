@@ -1,0 +1,693 @@
+#include "processing/coverage/coverage.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "core/geometry.h"
+#include "core/text.h"
+#include "processing/coverage/beam_bank.h"
+#include "processing/coverage/bearing_reverberation.h"
+#include "processing/coverage/echo_mean.h"
+#include "processing/coverage/plane_fans.h"
+#include "processing/detection_threshold.h"
+#include "raytrace/parallel/parallel.h"
+#include "raytrace/warnings/warnings.h"
+#include "reverb/fields/scattering_field.h"
+#include "reverb/fields/scattering_parts.h"
+#include "sonar/noise/noise_in_guide.h"
+#include "sonar/noise/noise_spectrum.h"
+#include "sonar/paths/enough_bounces.h"
+#include "sonar/reverberation/reverberation_bounces.h"
+#include "sonar/reverberation/reverberation_ends.h"
+#include "sonar/reverberation/reverberation_fields.h"
+#include "sonar/scenario/ping_bounds.h"
+#include "sonar/signal/pulse_coherence.h"
+
+namespace asdic::detail {
+namespace {
+
+constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
+
+void require(bool holds, const char* where, const std::string& got, const std::string& expected) {
+  if (!holds) throw InputError({.where = where, .got = got, .expected = expected});
+}
+
+/// Probability of detection over SNR in steps so small that it is straight between them.
+class ProbabilityTable {
+ public:
+  ProbabilityTable(double false_alarm_probability, double cells, double shape) {
+    values_.resize(static_cast<std::size_t>((high - low) / step) + 2);
+    in_parallel(values_.size(), [&](std::size_t i) {
+      values_[i] = detection_probability(power_from_db(low + static_cast<double>(i) * step),
+                                         false_alarm_probability, cells, shape);
+    });
+  }
+  [[nodiscard]] double operator()(double snr_db) const noexcept {
+    const double at = (std::clamp(snr_db, low, high) - low) / step;
+    const auto i = std::min(static_cast<std::size_t>(at), values_.size() - 2);
+    return std::lerp(values_[i], values_[i + 1], at - static_cast<double>(i));
+  }
+
+ private:
+  static constexpr double low = -40.0, high = 60.0, step = 0.1;  // [dB]
+  std::vector<double> values_;
+};
+
+/// Until when the farthest cells answer [s].
+double latest_echo(const PingSimulator& simulator, const CoverageSettings& settings, double apart,
+                   double pulse) {
+  // Paths that bounce steeply come later than along the horizontal by some per cent.
+  constexpr double steeper = 1.05;
+  return steeper * (2.0 * settings.reach + apart) /
+             (0.97 * fastest_water(simulator.scenario().environment)) +
+         pulse;
+}
+
+/// A mean over a window as long as the pulse of energy 1, |s(T/2 + x)|²: what of a density of power
+/// over delay is received at the middle of an echo.
+std::vector<float> pulse_weights(const Pulse& pulse, double step) {
+  const auto half = static_cast<std::size_t>(std::ceil(0.5 * pulse.duration() / step));
+  std::vector<float> weights(2 * half + 1, 0.0F);
+  const auto samples = 64 * weights.size();
+  const double width = step * static_cast<double>(weights.size()) / static_cast<double>(samples);
+  for (std::size_t i = 0; i < samples; ++i) {
+    const double x =
+        (static_cast<double>(i) + 0.5) * width - 0.5 * step * static_cast<double>(weights.size());
+    weights[i / 64] +=
+        static_cast<float>(width * std::norm(pulse.analytic(0.5 * pulse.duration() + x)));
+  }
+  return weights;
+}
+
+/// An odd part of a length that is no longer than some tens of metres.
+double part_of(double length) {
+  constexpr double longest = 50.0;  // [m]
+  const double parts = std::ceil(length / longest);
+  return length / (std::fmod(parts, 2.0) == 0.0 ? parts + 1.0 : parts);
+}
+
+/// Of what it is: surface, bottom, volume.
+constexpr std::size_t kinds = 3;
+std::size_t kind_of(const ScatteringPart& part) {
+  if (!part.level.boundary) return 2;
+  return *part.level.boundary == BoundaryKind::surface ? 0 : 1;
+}
+
+class Maker {
+ public:
+  Maker(const PingSimulator& simulator, const CoverageSettings& settings, const Progress& progress)
+      : simulator_(simulator),
+        scenario_(simulator.scenario()),
+        settings_(settings),
+        progress_(progress),
+        paths_(simulator.paths()),
+        geometry_(simulator.geometry(settings.ping)),
+        pulse_(simulator.pulse(geometry_.sent().transmitter)),
+        coherence_(pulse_coherence(pulse_)),
+        projector_(simulator.transmitter(settings.ping)),
+        pattern_(projector_, speed_at_source() / frequency(), speed_at_source(),
+                 geometry_.source_heading()),
+        phones_(geometry_.phones(settings.array)),
+        step_(settings.reach / settings.ranges),
+        spacing_(paths_.layered() ? part_of(step_) : step_),
+        nodes_(phones_, paths_.speed_at(receiver()) / frequency()),
+        beams_(phones_, frequency(), paths_.speed_at(receiver()), settings.bearings, nodes_,
+               noise_field(scenario_, settings.array)) {}
+
+  Coverage make() {
+    begin();
+    find_bounces();
+    make_fans();
+    walk_bearings();
+    look_through_beams();
+    return std::move(made_);
+  }
+
+ private:
+  [[nodiscard]] double frequency() const { return pulse_.centre_frequency(); }
+  [[nodiscard]] double speed_at_source() const { return paths_.speed_at(source()); }
+  [[nodiscard]] const Vec3& source() const { return geometry_.source().position; }
+  [[nodiscard]] const Vec3& receiver() const {
+    return geometry_.reference_place(settings_.array).position;
+  }
+  [[nodiscard]] double apart() const { return (source() - receiver()).head<2>().norm(); }
+  /// One plane serves both ends: they lie over one another, or the ocean is layered.
+  [[nodiscard]] bool together() const { return apart() < 0.5 * step_; }
+  /// Echoes by eigenrays and waves to every range, which all bearings share.
+  [[nodiscard]] bool by_arrivals() const { return paths_.layered() && together(); }
+  [[nodiscard]] std::size_t cells() const {
+    return static_cast<std::size_t>(settings_.bearings) *
+           static_cast<std::size_t>(settings_.ranges);
+  }
+  void tell(double share) const {
+    if (progress_ && !progress_(share)) throw Interrupted();
+  }
+
+  void begin() {
+    made_.settings = settings_;
+    made_.transmitter = projector_.name;
+    made_.array = geometry_.array(settings_.array).name;
+    made_.time = geometry_.time();
+    made_.frequency = frequency();
+    made_.source = source();
+    made_.receiver = receiver();
+    made_.gain = matched_filter_gain(pulse_);
+    const double shape = fluctuation_shape(settings_.fluctuation);
+    made_.threshold_db = detection_threshold_db(settings_.false_alarm_probability,
+                                                settings_.reference_cells, 0.5, shape);
+    made_.source_level_db = projector_.source_level_db;
+    for (int j = 0; j < settings_.bearings; ++j)
+      made_.bearings.push_back(2.0 * pi * (j + 0.5) / settings_.bearings);
+    for (int i = 0; i < settings_.ranges; ++i) made_.ranges.push_back((i + 0.5) * step_);
+    made_.bottom_depth.assign(cells(), unknown);
+    for (const double depth : settings_.depths) {
+      CoverageLayer layer{.depth = depth};
+      for (auto* values : {&layer.echo_db, &layer.two_way_loss_db, &layer.delay,
+                           &layer.reverberation_db, &layer.noise_db, &layer.signal_excess_db,
+                           &layer.detection_probability, &layer.uncertainty_db})
+        values->assign(cells(), unknown);
+      layer.certainty.assign(cells(), std::int8_t(CoverageCertainty::sure));
+      made_.layers.push_back(std::move(layer));
+    }
+    elevation_.assign(settings_.depths.size(), std::vector<float>(cells(), 0.0F));
+    latest_ = latest_echo(simulator_, settings_, apart(), pulse_.duration());
+    axis_.step = std::clamp(spacing_ / 1500.0, pulse_.duration() / 16.0, 0.25 * latest_);
+    axis_.bins = static_cast<std::size_t>(std::ceil(latest_ / axis_.step)) + 1;
+    parts_ = scattering_parts(scenario_.reverberation, scenario_.wind_speed,
+                              speed_at_surface(scenario_, paths_));
+    for (ScatteringPart& part : parts_)
+      for (const Vec3& end : {source(), receiver()}) move_aside(part, end.z());
+  }
+
+  [[nodiscard]] ReverberationContext context() const {
+    return {.geometry = geometry_,
+            .pattern = pattern_,
+            .pulse = pulse_,
+            .array = settings_.array,
+            .latest = latest_};
+  }
+
+  /// Where source and array are; nothing moves.
+  [[nodiscard]] SheetEnds ends() const {
+    SheetEnds ends = {.source = {source(), Vec3::Zero()},
+                      .receiver = {receiver(), Vec3::Zero()},
+                      .source_speed = paths_.speed_at(source()),
+                      .receiver_speed = paths_.speed_at(receiver()),
+                      .frequency = frequency(),
+                      .latest = latest_};
+    // A transmitter within its array, by whose own paths sound comes back in phase.
+    const Carried point = geometry_.reverberation_point(settings_.array, frequency());
+    if ((point.at(geometry_.time()).position - source()).norm() < 1e-6)
+      ends.receiver.position = source();
+    return ends;
+  }
+
+  void find_bounces() {
+    // To the target: of the nearest, a middle and the farthest range.
+    const auto judged = [&](const Vec3& from, double share, double depth) {
+      const double bearing = 2.0 * pi * share;
+      const double range = share * settings_.reach;
+      const Vec3 place(from.x() + range * std::sin(bearing), from.y() + range * std::cos(bearing),
+                       depth);
+      return enough_bounces(paths_, scenario_.propagation, from, place, frequency(), latest_);
+    };
+    for (const double depth : settings_.depths)
+      for (const Vec3& end : {source(), receiver()})
+        for (const double share : {0.1, 0.4, 1.0}) to_target_.include(judged(end, share, depth));
+    made_.followed = to_target_;
+    const BoundaryFans fans(paths_);
+    const ReverberationContext at = context();
+    for (const ScatteringPart& part : parts_) {
+      BoundaryFans::Settings fan = fan_settings();
+      fan.limits = time_limits({});
+      to_part_.push_back(
+          reverberation_bounces(part, ends(), fans, fan, paths_.layered(), scenario_, at));
+      made_.followed.include(to_part_.back());
+    }
+  }
+
+  [[nodiscard]] double reverberation_reach() const {
+    return 0.5 * fastest_water(scenario_.environment) * latest_ + apart();
+  }
+  [[nodiscard]] BoundaryFans::Settings fan_settings() const {
+    return {.sectors = settings_.bearings,
+            .spacing = spacing_,
+            .wide = spacing_,
+            .max_range = reverberation_reach(),
+            .frequency = frequency(),
+            .limits = {}};
+  }
+  /// What comes home too late is not followed.
+  [[nodiscard]] PathLimits time_limits(PathLimits limits) const {
+    limits.home_slowness = 0.999 / fastest_water(scenario_.environment);
+    limits.max_delay = latest_ + limits.home_slowness * apart();
+    limits.diffraction = false;
+    return limits;
+  }
+
+  /// The level of a target's depth: a little aside of a source's or array's own, which only a ray
+  /// along it would reach.
+  [[nodiscard]] GroundLevel level_of(double depth) const {
+    constexpr double aside = 0.05;  // [m]
+    for (const Vec3& end : {source(), receiver()})
+      if (std::abs(depth - end.z()) < aside) depth = end.z() + (depth < end.z() ? -aside : aside);
+    return GroundLevel(depth);
+  }
+
+  void make_fans() {
+    if (by_arrivals()) find_arrivals();
+    std::vector<WantedLevel> levels;
+    first_part_ = by_arrivals() ? 0 : settings_.depths.size();
+    for (const double depth : settings_.depths)
+      if (!by_arrivals())
+        levels.push_back(
+            {level_of(depth), time_limits(limits_of(scenario_.propagation, to_target_))});
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+      levels.push_back(
+          {parts_[i].level, time_limits(limits_of(scenario_.propagation, to_part_[i]))});
+    const double reach =
+        std::max(settings_.reach + apart(), parts_.empty() ? 0.0 : reverberation_reach());
+    const SheetEnds at = ends();
+    const auto fans = [&](const Vec3& place) {
+      return std::make_unique<PlaneFans>(paths_, place, levels, spacing_, reach, frequency());
+    };
+    out_ = fans(at.source.position);
+    if (at.source.position.z() != receiver().z() || !(together() || paths_.layered()))
+      back_ = fans(at.receiver.position);
+    made_.planes = paths_.layered() ? 1 : settings_.bearings * (back_ ? 2 : 1);
+  }
+
+  /// Fans of both ends that lie in the plane of a bearing from the array.
+  struct Ends {
+    PlaneFans::Fans out, back;
+  };
+  [[nodiscard]] Ends fans_at(double bearing) const {
+    Ends found{.out = out_->at(bearing), .back = {}};
+    found.back = back_ ? back_->at(bearing) : found.out;
+    return found;
+  }
+
+  void walk_bearings() {
+    const auto bearings = static_cast<std::size_t>(settings_.bearings);
+    const std::size_t row = bearings * nodes_.size();
+    for (std::size_t k = 0; k < kinds; ++k)
+      if (std::any_of(parts_.begin(), parts_.end(),
+                      [&](const ScatteringPart& part) { return kind_of(part) == k; }))
+        density_[k].assign(axis_.bins * row, 0.0F);
+    std::atomic<std::size_t> done = 0;
+    const bool symmetric = paths_.layered() && apart() < 1e-3 && pattern_.azimuthally_symmetric();
+    // Of a sea that is the same all round one bearing tells them all.
+    const std::size_t first_only = symmetric ? 1 : bearings;
+    in_parallel(first_only, [&](std::size_t j) {
+      const Ends fans = fans_at(made_.bearings[j]);
+      EchoMeans means(frequency(), *coherence_, pulse_.bandwidth_99());
+      for (std::size_t depth = 0; depth < settings_.depths.size(); ++depth)
+        echoes(j, depth, by_arrivals() ? nullptr : fans.out[depth].get(),
+               by_arrivals() ? nullptr : fans.back[depth].get(), means);
+      for (std::size_t i = 0; i < parts_.size(); ++i)
+        reverberation(j, i, fans.out[first_part_ + i], fans.back[first_part_ + i]);
+      tell(0.7 * static_cast<double>(++done) / static_cast<double>(first_only));
+    });
+    if (symmetric) spread_first_bearing();
+    for (std::size_t j = 0; j < bearings; ++j)
+      for (int i = 0; i < settings_.ranges; ++i)
+        made_.bottom_depth[j * static_cast<std::size_t>(settings_.ranges) +
+                           static_cast<std::size_t>(i)] =
+            static_cast<float>(paths_.bottom_depth(place_of(j, i)));
+  }
+
+  [[nodiscard]] Vec3 place_of(std::size_t bearing, int range) const {
+    const double r = made_.ranges[static_cast<std::size_t>(range)];
+    return receiver() +
+           Vec3(r * std::sin(made_.bearings[bearing]), r * std::cos(made_.bearings[bearing]), 0.0);
+  }
+
+  /// What the first bearing has found holds for the others.
+  void spread_first_bearing() {
+    const auto ranges = static_cast<std::size_t>(settings_.ranges);
+    const auto bearings = static_cast<std::size_t>(settings_.bearings);
+    const auto spread = [&](auto& values) {
+      for (std::size_t j = 1; j < bearings; ++j)
+        std::copy_n(values.begin(), ranges,
+                    values.begin() + static_cast<std::ptrdiff_t>(j * ranges));
+    };
+    for (std::size_t d = 0; d < made_.layers.size(); ++d) {
+      CoverageLayer& layer = made_.layers[d];
+      for (auto* values :
+           {&layer.echo_db, &layer.two_way_loss_db, &layer.delay, &layer.uncertainty_db})
+        spread(*values);
+      spread(layer.certainty);
+      spread(elevation_[d]);
+    }
+    for (std::vector<float>& density : density_)
+      for (std::size_t row = 0; row < density.size(); row += bearings * nodes_.size())
+        for (std::size_t j = 1; j < bearings; ++j)
+          std::copy_n(density.begin() + static_cast<std::ptrdiff_t>(row), nodes_.size(),
+                      density.begin() + static_cast<std::ptrdiff_t>(row + j * nodes_.size()));
+  }
+
+  /// The paths of a cell of a fan as legs of an echo.
+  void legs_of(const BoundaryFan& fan, const Vec3& end, const Vec3& place, bool sent,
+               std::vector<EchoLeg>& legs) const {
+    legs.clear();
+    const Vec2 way = (place - end).head<2>();
+    const double range = way.norm(), bearing = std::atan2(way.x(), way.y());
+    const BoundaryPaths& paths = *fan.towards(bearing).paths;
+    const double at = paths.grid().at(range);
+    if (!(at < static_cast<double>(paths.cells()))) return;
+    const auto cell = static_cast<std::size_t>(at);
+    const double beyond = range - paths.range(cell);
+    const Vec2 outward = range > 0.0 ? Vec2(way / range) : Vec2(0.0, 1.0);
+    for (const BoundaryPath& path : paths.paths(cell)) {
+      legs.push_back(
+          {.amplitude = path.amplitude,
+           .sent = sent ? pattern_.towards(bearing, path.launch_elevation) : 1.0,
+           .delay = path.delay +
+                    (path.horizontal_slowness + 0.5 * path.slowness_slope * beyond) * beyond,
+           .slowness = path.horizontal_slowness * outward,
+           .elevation = path.launch_elevation});
+    }
+  }
+
+  /// Every eigenray and wave from an end to all ranges of a layered ocean.
+  void find_arrivals() {
+    const SheetEnds at = ends();
+    const PathLimits limits = limits_of(scenario_.propagation, to_target_);
+    for (const double depth : settings_.depths) {
+      Both both;
+      both.out.resize(made_.ranges.size());
+      const auto search = [&](const Vec3& end, std::vector<Arrivals>& found) {
+        found.resize(made_.ranges.size());
+        in_parallel(found.size(), [&](std::size_t i) {
+          found[i] = paths_.find(end, Vec3(end.x(), end.y() + made_.ranges[i], depth), frequency(),
+                                 limits);
+        });
+      };
+      search(at.source.position, both.out);
+      if (at.source.position.z() != at.receiver.position.z())
+        search(at.receiver.position, both.back);
+      arrivals_.push_back(std::move(both));
+    }
+  }
+
+  /// The same as legs of an echo, to a place that may lie some metres off that range.
+  /// \return whether one of them is a ray
+  bool legs_of(const Arrivals& arrivals, double range, const Vec3& end, const Vec3& place,
+               bool sent, std::vector<EchoLeg>& legs) const {
+    legs.clear();
+    const Separation way = separation(end, place);
+    const Vec2 outward(std::sin(way.bearing), std::cos(way.bearing));
+    bool ray = false;
+    for (const Arrival& a : arrivals) {
+      legs.push_back({.amplitude = a.amplitude,
+                      .sent = sent ? pattern_.towards(way.bearing, a.launch_elevation) : 1.0,
+                      .delay = a.delay + a.horizontal_slowness * (way.range - range),
+                      .slowness = a.horizontal_slowness * outward,
+                      .elevation = a.launch_elevation});
+      ray = ray || a.kind != ArrivalKind::diffracted;
+    }
+    return ray;
+  }
+
+  /// Echoes of one bearing. \param out, back  fans; null: of arrivals
+  void echoes(std::size_t j, std::size_t depth, const BoundaryFan* out, const BoundaryFan* back,
+              EchoMeans& means) {
+    CoverageLayer& layer = made_.layers[depth];
+    const auto ranges = static_cast<std::size_t>(settings_.ranges);
+    const std::size_t first = j * ranges;
+    const SheetEnds at = ends();
+    std::vector<EchoLeg> there, home;
+    std::vector<std::size_t> paths(ranges, 0);
+    for (std::size_t i = 0; i < ranges; ++i) {
+      Vec3 place = place_of(j, static_cast<int>(i));
+      place.z() = layer.depth;
+      const std::size_t cell = first + i;
+      if (layer.depth >= paths_.bottom_depth(place) || layer.depth <= paths_.surface_depth(place)) {
+        layer.certainty[cell] = std::int8_t(CoverageCertainty::no_water);
+        continue;
+      }
+      bool rays = true;
+      const double range = made_.ranges[i];
+      if (out == nullptr) {
+        const Both& both = arrivals_[depth];
+        const Arrivals& way_back = both.back.empty() ? both.out[i] : both.back[i];
+        rays = legs_of(both.out[i], range, at.source.position, place, true, there);
+        rays = legs_of(way_back, range, at.receiver.position, place, false, home) && rays;
+      } else {
+        legs_of(*out, at.source.position, place, true, there);
+        legs_of(*back, at.receiver.position, place, false, home);
+        rays = !there.empty() && !home.empty();
+      }
+      paths[i] = rays ? there.size() + home.size() : 0;
+      if (!rays) {
+        layer.certainty[cell] = std::int8_t(CoverageCertainty::no_path);
+        layer.uncertainty_db[cell] = std::numeric_limits<float>::infinity();
+      }
+      const EchoCell where{
+          .outward = Vec2(std::sin(made_.bearings[j]), std::cos(made_.bearings[j])),
+          .length = step_,
+          .width = together() ? 0.0 : range * 2.0 * pi / settings_.bearings};
+      const EchoMean echo = means(there, home, where);
+      layer.echo_db[cell] = static_cast<float>(projector_.source_level_db + settings_.strength_db +
+                                               db_from_power(echo.power));
+      layer.two_way_loss_db[cell] = static_cast<float>(-db_from_power(echo.open_power));
+      elevation_[depth][cell] = static_cast<float>(echo.elevation);
+      if (echo.power > 0.0) layer.delay[cell] = static_cast<float>(echo.delay);
+      if (rays) layer.uncertainty_db[cell] = static_cast<float>(echo.spread_db);
+    }
+    find_edges(layer, first, paths);
+  }
+
+  /// Where paths begin or end from a cell to the next, and the level jumps.
+  void find_edges(CoverageLayer& layer, std::size_t first,
+                  const std::vector<std::size_t>& paths) const {
+    constexpr float jump = 3.0F, at_shadow = 6.0F;  // [dB]
+    const auto is = [&](std::size_t i, CoverageCertainty what) {
+      return layer.certainty[first + i] == std::int8_t(what);
+    };
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+      if (!is(i, CoverageCertainty::sure)) continue;
+      float worst = 0.0F;
+      for (const std::size_t next : {i - 1, i + 1}) {
+        if (next >= paths.size() || is(next, CoverageCertainty::no_water)) continue;
+        if (is(next, CoverageCertainty::no_path))
+          worst = std::max(worst, at_shadow);
+        else if (paths[next] != paths[i]) {
+          const float step = std::abs(layer.echo_db[first + next] - layer.echo_db[first + i]);
+          if (step > jump) worst = std::max(worst, step);
+        }
+      }
+      if (!(worst > 0.0F)) continue;
+      layer.certainty[first + i] = std::int8_t(CoverageCertainty::edge);
+      layer.uncertainty_db[first + i] = std::max(layer.uncertainty_db[first + i], worst);
+    }
+  }
+
+  /// Which paths of a leg are received as one.
+  [[nodiscard]] PathResolution alike(const ScatteringPart& part) const {
+    double level = 0.0, upright = 0.0;
+    for (const Vec3& phone : phones_) {
+      level = std::max(level, phone.head<2>().norm());
+      upright = std::max(upright, std::abs(phone.z()));
+    }
+    return {.delay = 1.0 / (8.0 * pulse_.bandwidth_99()),
+            .level = spacing_ + level,
+            .level_of_range = 1.0 / 256.0,
+            .depth = upright,
+            .thickness = part.thickness};
+  }
+
+  /// Reverberation of one bearing.
+  void reverberation(std::size_t j, std::size_t number,
+                     const std::shared_ptr<const BoundaryFan>& out,
+                     const std::shared_ptr<const BoundaryFan>& back) {
+    const ScatteringPart& part = parts_[number];
+    const SheetEnds at = ends();
+    const auto depth_at = [&](const Vec3& place) {
+      if (!part.level.boundary) return part.level.depth;
+      return *part.level.boundary == BoundaryKind::surface ? paths_.surface_depth(place)
+                                                           : paths_.bottom_depth(place);
+    };
+    ScatteringSheet::Groups groups;
+    groups.out = std::make_shared<FanGroups>(*out, alike(part), frequency());
+    groups.back =
+        out == back ? groups.out : std::make_shared<FanGroups>(*back, alike(part), frequency());
+    const ScatteringSheet sheet(out, back, part.law, at, pattern_, groups);
+    const double depth = depth_at(receiver());
+    const ScatteringGround ground{
+        .middle = receiver().head<2>(),
+        .edges = ring_edges(reverberation_reach(), std::abs(depth - receiver().z()), axis_.step),
+        .depth = depth,
+        .thickness = part.thickness};
+    std::vector<float> power(axis_.bins * nodes_.size(), 0.0F);
+    add_reverberation(sheet, ground, made_.bearings[j], 2.0 * pi / settings_.bearings, *coherence_,
+                      axis_, nodes_, power);
+    std::vector<float>& density = density_[kind_of(part)];
+    const std::size_t row = static_cast<std::size_t>(settings_.bearings) * nodes_.size();
+    for (std::size_t bin = 0; bin < axis_.bins; ++bin)
+      for (std::size_t e = 0; e < nodes_.size(); ++e)
+        density[bin * row + j * nodes_.size() + e] += power[bin * nodes_.size() + e];
+  }
+
+  /// Over each delay the mean that a pulse receives, times its energy.
+  void receive_pulse(std::vector<float>& density) const {
+    if (density.empty()) return;
+    const std::vector<float> weights = pulse_weights(pulse_, axis_.step);
+    const std::size_t row = density.size() / axis_.bins, half = weights.size() / 2;
+    std::vector<float> received(density.size(), 0.0F);
+    in_parallel(axis_.bins, [&](std::size_t bin) {
+      for (std::size_t k = 0; k < weights.size(); ++k) {
+        if (bin + k < half || bin + k - half >= axis_.bins) continue;
+        const float* const from = &density[(bin + k - half) * row];
+        for (std::size_t i = 0; i < row; ++i) received[bin * row + i] += weights[k] * from[i];
+      }
+    });
+    density = std::move(received);
+  }
+
+  void look_through_beams() {
+    for (std::vector<float>& density : density_) receive_pulse(density);
+    const ProbabilityTable probability(settings_.false_alarm_probability, settings_.reference_cells,
+                                       fluctuation_shape(settings_.fluctuation));
+    const double noise_db = noise_band_db(scenario_.noise, frequency(), pulse_.bandwidth_40db());
+    std::atomic<std::size_t> done = 0;
+    in_parallel(static_cast<std::size_t>(settings_.bearings), [&](std::size_t j) {
+      look(j, noise_db, probability);
+      tell(0.7 + 0.3 * static_cast<double>(++done) / settings_.bearings);
+    });
+  }
+
+  /// One bearing: all its cells, by the elevation at which the beam looks.
+  void look(std::size_t j, double noise_db, const ProbabilityTable& probability) {
+    const auto ranges = static_cast<std::size_t>(settings_.ranges);
+    const std::size_t row = static_cast<std::size_t>(settings_.bearings) * nodes_.size();
+    std::vector<std::optional<std::vector<float>>> beams(nodes_.size());
+    std::vector<double> gains(nodes_.size());
+    for (std::size_t d = 0; d < made_.layers.size(); ++d) {
+      CoverageLayer& layer = made_.layers[d];
+      for (std::size_t cell = j * ranges; cell < (j + 1) * ranges; ++cell) {
+        if (layer.certainty[cell] == std::int8_t(CoverageCertainty::no_water)) continue;
+        const std::size_t node = nodes_.nearest(double(elevation_[d][cell]));
+        if (!beams[node]) {
+          beams[node].emplace(row);
+          beams_.beam(made_.bearings[j], node, *beams[node]);
+          gains[node] = beams_.gain_over_noise_db(made_.bearings[j], node);
+        }
+        // Of a cell that nothing answers from: as if along a straight line.
+        const double range = made_.ranges[cell - j * ranges];
+        const double delay = std::isnan(layer.delay[cell])
+                                 ? (2.0 * range + apart()) / paths_.speed_at(receiver())
+                                 : double(layer.delay[cell]);
+        double reverberation = 0.0;
+        for (const std::vector<float>& density : density_)
+          if (!density.empty()) reverberation += received(density, *beams[node], delay);
+        const BeamLevels levels{
+            .echo_db = double(layer.echo_db[cell]),
+            .reverberation_db = projector_.source_level_db + db_from_power(reverberation),
+            .noise_db = noise_db - gains[node]};
+        const double excess = signal_excess_db(levels, made_.gain, made_.threshold_db);
+        layer.reverberation_db[cell] = static_cast<float>(levels.reverberation_db);
+        layer.noise_db[cell] = static_cast<float>(levels.noise_db);
+        layer.signal_excess_db[cell] = static_cast<float>(excess);
+        layer.detection_probability[cell] =
+            static_cast<float>(probability(excess + made_.threshold_db));
+      }
+    }
+  }
+
+  /// Power in a beam at a delay.
+  [[nodiscard]] double received(const std::vector<float>& density, const std::vector<float>& beam,
+                                double delay) const {
+    const double at =
+        std::clamp(delay / axis_.step - 0.5, 0.0, static_cast<double>(axis_.bins) - 1.001);
+    const auto bin = static_cast<std::size_t>(at);
+    const auto later = static_cast<float>(at - static_cast<double>(bin));
+    const float* const a = &density[bin * beam.size()];
+    const float* const b = a + beam.size();
+    constexpr std::size_t lanes = 8;  // summed beside one another: the compiler may not reorder
+    float sums[lanes] = {};
+    std::size_t i = 0;
+    for (; i + lanes <= beam.size(); i += lanes)
+      for (std::size_t k = 0; k < lanes; ++k)
+        sums[k] += beam[i + k] * (a[i + k] + later * (b[i + k] - a[i + k]));
+    double sum = 0.0;
+    for (const float part : sums) sum += double(part);
+    for (; i < beam.size(); ++i) sum += double(beam[i] * (a[i] + later * (b[i] - a[i])));
+    return sum;
+  }
+
+  const PingSimulator& simulator_;
+  const Scenario& scenario_;
+  const CoverageSettings& settings_;
+  const Progress& progress_;
+  const PropagationPaths& paths_;
+  PingGeometry geometry_;
+  const Pulse& pulse_;
+  std::shared_ptr<const PulseCoherence> coherence_;
+  Transmitter projector_;
+  BeamPattern pattern_;
+  std::vector<Vec3> phones_;
+  double step_;     // of the ranges [m]
+  double spacing_;  // of the fans' cells: an odd part of it, whose middles are among them [m]
+  ElevationNodes nodes_;
+  BeamBank beams_;
+  Coverage made_;
+  double latest_ = 0.0;
+  DelayAxis axis_;
+  std::vector<ScatteringPart> parts_;
+  Bounces to_target_;
+  std::vector<Bounces> to_part_;
+  struct Both {
+    std::vector<Arrivals> out, back;  // [ranges]; back: none, it is the same
+  };
+  std::vector<Both> arrivals_;                     // [depths], where echoes are by_arrivals()
+  std::size_t first_part_ = 0;                     // of the fans' levels, that is of reverberation
+  std::unique_ptr<PlaneFans> out_, back_;          // back_: none, it is the same
+  std::array<std::vector<float>, kinds> density_;  // [bins][bearings × nodes] [1/s]
+  std::vector<std::vector<float>> elevation_;      // of the echo, [depths][cells] [rad]
+};
+
+void check(const PingSimulator& simulator, const CoverageSettings& settings) {
+  const auto number = [](auto x) { return to_text(static_cast<double>(x)); };
+  require(settings.ping >= 1 && settings.ping <= simulator.pings(), "--ping", number(settings.ping),
+          "a ping from 1 to " + number(simulator.pings()));
+  require(settings.bearings >= 4 && settings.bearings <= 3600, "--bearings",
+          number(settings.bearings), "4 to 3600 bearings");
+  require(settings.ranges >= 2 && settings.ranges <= 20000, "--ranges", number(settings.ranges),
+          "2 to 20000 ranges");
+  require(std::isfinite(settings.reach) && settings.reach >= 10.0 && settings.reach <= 1e6,
+          "--reach", number(settings.reach) + " m", "10 to 1000000 m");
+  require(!settings.depths.empty(), "--depth", "no depth", "one or more");
+  require(settings.false_alarm_probability > 0.0 && settings.false_alarm_probability < 0.5,
+          "--false-alarm", number(settings.false_alarm_probability), "above 0, below 0.5");
+  for (const double depth : settings.depths)
+    require(std::isfinite(depth) && depth > 0.0 && depth < 12000.0, "--depth", number(depth) + " m",
+            "above 0, below 12000 m");
+}
+
+}  // namespace
+
+MemoryNeed coverage_need(const PingSimulator& /*simulator*/, const CoverageSettings& settings) {
+  const double cells = static_cast<double>(settings.bearings) * settings.ranges;
+  constexpr double a_cell = 8.0 * sizeof(float) + 1.0 + sizeof(float);
+  // Reverberation over delay, elevation and bearing, twice while the pulse is laid over it.
+  constexpr double nodes = 20.0, bins = 4.0;
+  return {.where = "--ranges",
+          .what = "a picture of " + std::to_string(settings.bearings) + " bearings and " +
+                  std::to_string(settings.ranges) + " ranges",
+          .bytes = cells * (a_cell * static_cast<double>(settings.depths.size()) +
+                            4.0 * bins * nodes * sizeof(float)),
+          .remedy = "fewer bearings, ranges or depths"};
+}
+
+Coverage coverage(const PingSimulator& simulator, const CoverageSettings& settings,
+                  const Progress& progress) {
+  check(simulator, settings);
+  return Maker(simulator, settings, progress).make();
+}
+
+}  // namespace asdic::detail

@@ -1,0 +1,54 @@
+#include "processing/coverage/plane_fans.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace asdic::detail {
+
+PlaneFans::PlaneFans(const PropagationPaths& paths, const Vec3& place,
+                     std::vector<WantedLevel> levels, double spacing, double reach,
+                     double frequency)
+    : paths_(paths),
+      fans_(paths),
+      place_(place),
+      levels_(std::move(levels)),
+      spacing_(spacing),
+      reach_(reach),
+      frequency_(frequency) {
+  if (!paths_.layered()) return;
+  for (const WantedLevel& wanted : levels_)
+    everywhere_.push_back(fans_.around(place_, wanted.level,
+                                       {.sectors = 1,
+                                        .spacing = spacing_,
+                                        .wide = spacing_,
+                                        .max_range = reach_,
+                                        .frequency = frequency_,
+                                        .limits = wanted.limits}));
+}
+
+PlaneFans::Fans PlaneFans::at(double bearing) const {
+  if (paths_.layered() || levels_.empty()) return everywhere_;
+  // One fan for all levels, with the most bounces that any of them asks for.
+  PathLimits limits = levels_.front().limits;
+  std::vector<GroundLevel> levels;
+  for (const WantedLevel& wanted : levels_) {
+    levels.push_back(wanted.level);
+    limits.max_surface_bounces =
+        std::max(limits.max_surface_bounces, wanted.limits.max_surface_bounces);
+    limits.max_bottom_bounces =
+        std::max(limits.max_bottom_bounces, wanted.limits.max_bottom_bounces);
+  }
+  const Plane plane = paths_.plane(place_, bearing, reach_);
+  std::vector<BoundaryPaths> all = mean_paths(*paths_.solver(plane), place_.z(), levels, spacing_,
+                                              reach_, frequency_, limits, rays);
+  Fans found;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    auto fan = std::make_shared<BoundaryFan>();
+    fan->planes.push_back(fans_.plane_of(place_, plane, levels[i],
+                                         std::make_shared<const BoundaryPaths>(std::move(all[i]))));
+    found.push_back(std::move(fan));
+  }
+  return found;
+}
+
+}  // namespace asdic::detail

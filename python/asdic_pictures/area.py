@@ -1,0 +1,298 @@
+"""What a sonar sees of the area around it (docs/formats/area.md): maps over bearing and range, the sea
+floor with tracks, the sections that sound was traced through."""
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from . import results, source, style
+from .data import InputError
+
+KIND = "asdic area"
+SURE, NO_PATH, EDGE, NO_WATER = range(4)
+
+@dataclass
+class Value:
+    """One of the maps."""
+
+    dataset: str
+    title: str
+    label: str
+
+
+MAPS = {
+    "signal_excess": Value("signal_excess_db", "Signal excess", "signal excess / dB"),
+    "detection_probability": Value("detection_probability", "Probability of detection",
+                                   "probability of detection"),
+    "echo_level": Value("echo_db", "Echo level", "level of the echo / dB re 1 µPa"),
+    "reverberation_level": Value("reverberation_db", "Reverberation level in the beam",
+                                 "level of reverberation / dB re 1 µPa"),
+}
+OTHERS = {"sea_floor": "Sea floor and tracks", "sections": "Sections of the sea floor"}
+ALL = (*MAPS, *OTHERS)
+
+
+@dataclass
+class Area:
+    title: str
+    depth: np.ndarray           # [d] of the target [m]
+    bearing: np.ndarray         # [b] of the cells' middles, true [deg]
+    range: np.ndarray           # [r] from the array [m]
+    array: np.ndarray           # [3] east, north, depth: the middle [m]
+    source: np.ndarray          # [3]
+    values: dict                # dataset → [d, b, r]
+    certainty: np.ndarray       # [d, b, r]
+    uncertainty: np.ndarray     # [d, b, r] [dB]
+    bottom: np.ndarray          # [b, r] [m]
+    about: str                  # who listens to whom
+    tracks: dict = field(default_factory=dict)   # "platforms", "targets" → (names, [n, instants, 3])
+    tags: dict = field(default_factory=dict)
+
+    @property
+    def apart(self) -> float:
+        """Between transmitter and array [m]"""
+        return float(np.hypot(*(self.source - self.array)[:2]))
+
+
+def read(path) -> Area:
+    """Of a file or a dataset. Raises InputError."""
+    if isinstance(path, Area):
+        return path
+    if results.filetype(path) != KIND:
+        raise InputError(source.name_of(path), f'filetype "{results.filetype(path)}"', f'"{KIND}"')
+    reader = results.Reader(path)
+    with reader.file:
+        depth, bearing, span = (reader.array(n) for n in ("depth", "bearing", "range"))
+        shape = (depth.size, bearing.size, span.size)
+        values = {}
+        for name in [v.dataset for v in MAPS.values()] + ["certainty", "uncertainty_db"]:
+            values[name] = reader.array(name)
+            if values[name].shape != shape:
+                raise InputError(reader.path, f"{name} of shape {values[name].shape}", f"{shape}")
+        tracks = {}
+        for kind in ("platforms", "targets"):
+            if reader.has(f"{kind}/track"):
+                names = [results.text({"n": n}, "n")
+                         for n in np.ravel(reader.file[kind].attrs.get("names", []))]
+                tracks[kind] = (names, reader.array(f"{kind}/track"))
+        attributes = reader.file.attrs
+        about = (f"{results.text(attributes, 'array')} hears {results.text(attributes, 'transmitter')}"
+                 f", {reader.number('frequency_hz'):g} Hz, target of "
+                 f"{reader.number('target_strength_db'):.3g} dB")
+        return Area(reader.title(), depth, bearing, span, reader.array("array_position"),
+                    reader.array("source_position"), values, values["certainty"],
+                    values["uncertainty_db"], reader.array("bottom_depth"), about, tracks,
+                    reader.tags())
+
+
+def nothing_to_show(area: Area, name: str) -> str | None:
+    if name in OTHERS:
+        return None if np.isfinite(area.bottom).any() else "the file does not tell the sea floor"
+    good = np.isfinite(area.values[MAPS[name].dataset])
+    return None if good.any() else "no ray comes anywhere, or nothing scatters"
+
+
+# ------------------------------------------------------------------------------------ the map
+
+
+def edges(area: Area):
+    """East and north of the corners of the cells, from the array [km]. [b + 1, r + 1] each"""
+    turn = 360.0 / area.bearing.size
+    bearing = np.radians(np.append(area.bearing - 0.5 * turn, area.bearing[-1] + 0.5 * turn))
+    step = area.range[1] - area.range[0] if area.range.size > 1 else 2.0 * area.range[0]
+    span = np.append(area.range - 0.5 * step, area.range[-1] + 0.5 * step) / 1e3
+    return np.outer(np.sin(bearing), span), np.outer(np.cos(bearing), span)
+
+
+def middles(area: Area):
+    """The same of the cells' middles, closed: the first bearing comes again. [b + 1, r] each"""
+    bearing = np.radians(np.append(area.bearing, area.bearing[0]))
+    return np.outer(np.sin(bearing), area.range / 1e3), np.outer(np.cos(bearing), area.range / 1e3)
+
+
+def closed(values):
+    return np.concatenate([values, values[:1]])
+
+
+def square_figure(title: str, axes):
+    """About as wide as the map, or the caller's axes."""
+    fig, axes = style.figure(title, 7.6, axes)
+    if isinstance(fig, style.Picture):
+        fig.set_figwidth(8.3)
+    return fig, axes
+
+
+def frame(axes, area: Area) -> None:
+    """North up, rings of range and the points of the compass."""
+    far = edges(area)[1].max()
+    style.image_frame(axes)
+    axes.set_facecolor(style.PAPER)
+    axes.set_aspect("equal", anchor="W")
+    axes.set_xlim(-1.04 * far, 1.04 * far)
+    axes.set_ylim(-1.04 * far, 1.04 * far)
+    axes.set_xlabel("east of the array / km")
+    axes.set_ylabel("north of the array / km")
+    for ring in axes.get_xticks():
+        if 0.0 < ring <= far:
+            t = np.linspace(0.0, 2.0 * np.pi, 361)
+            axes.plot(ring * np.sin(t), ring * np.cos(t), color=style.INK, lw=0.5, alpha=0.35,
+                      zorder=4)
+
+
+def contours(axes, area: Area) -> list:
+    """Of the sea floor's depth. → handles"""
+    low, high = np.nanmin(area.bottom), np.nanmax(area.bottom)
+    if not high - low > 1.0:
+        return []
+    step = (high - low) / 6.0
+    nice = 10.0 ** np.floor(np.log10(step))
+    step = nice * min((f for f in (1, 2, 5, 10) if f * nice >= step), default=10)
+    levels = np.arange(np.ceil(low / step) * step, high, step)
+    if not levels.size:
+        return []
+    made = axes.contour(*middles(area), closed(area.bottom), levels=levels, colors=[style.INK],
+                        linewidths=0.7, alpha=0.75, zorder=3)
+    axes.clabel(made, fmt="%g", fontsize=7)
+    return [Line2D([], [], color=style.INK, lw=0.7, label="depth of the sea floor / m")]
+
+
+def marks(axes, area: Area) -> list:
+    """Who is where, with tracks. → handles"""
+    handles = []
+
+    def put(place, label, **look):
+        off = (np.asarray(place)[:2] - area.array[:2]) / 1e3
+        axes.plot(*off, ls="none", mec=style.PAPER, mew=0.9, zorder=7, **look)
+        handles.append(Line2D([], [], ls="none", mec=style.PAPER, label=label, **look))
+
+    for kind, (names, track) in area.tracks.items():
+        for k, (name, way) in enumerate(zip(names, track)):
+            shade = style.colour(k) if kind == "targets" else style.INK
+            off = (way[:, :2] - area.array[:2]) / 1e3
+            if np.ptp(way[:, :2], axis=0).max() > 1.0:
+                axes.plot(*off.T, color=shade, lw=1.4, zorder=6, path_effects=list(style.OVER_MAP))
+            if kind == "targets" and k < 6:
+                put(way[0], f"{style.name(name)}: at the start", marker="o", ms=7, mfc=shade)
+    put(area.array, "array", marker="^", ms=8, mfc=style.INK)
+    if area.apart > 1.0:
+        put(area.source, "transmitter", marker="D", ms=7, mfc=style.INK)
+    return handles
+
+
+def limits_of(name: str, values):
+    if name == "signal_excess":
+        return -20.0, 20.0
+    if name == "detection_probability":
+        return 0.0, 1.0
+    return style.colour_limits(values, floor_percentile=5.0)
+
+
+def draw_map(area: Area, name: str, layer: int = 0, axes=None, limits=None):
+    """One of MAPS at one depth of the target."""
+    what = MAPS[name]
+    fig, axes = square_figure(what.title, axes)
+    values = area.values[what.dataset][layer]
+    certainty = area.certainty[layer]
+    shown = np.where(np.isfinite(values) & (certainty != NO_WATER), values, np.nan)
+    limits = limits or limits_of(name, shown)
+    x, y = edges(area)
+    cmap = style.DIVERGING if name == "signal_excess" else style.MAP
+    mesh = axes.pcolormesh(x, y, shown, cmap=cmap, vmin=limits[0], vmax=limits[1], rasterized=True,
+                           zorder=1)
+    frame(axes, area)
+    handles = []
+    for where, shade, label in ((certainty == NO_WATER, style.GROUND, "sea floor above that depth"),
+                                (certainty == NO_PATH, style.NOTHING, "shadow: no ray comes")):
+        if name == "reverberation_level" and shade == style.NOTHING or not where.any():
+            continue
+        axes.pcolormesh(x, y, np.where(where, 1.0, np.nan), cmap=style.flat_map(shade), vmin=0.0,
+                        vmax=1.0, rasterized=True, zorder=2)
+        handles.append(Patch(fc=shade, ec=style.GREY, label=label))
+    if name != "reverberation_level":
+        handles += hatch_unsure(axes, area, layer)
+    if name in ("signal_excess", "detection_probability"):
+        handles += half_detected(axes, area, layer)
+    handles += contours(axes, area) + marks(axes, area)
+    style.colour_bar(fig, mesh, axes, what.label, style.beyond(shown, limits))
+    style.subtitle(axes, f"{area.title}  ·  target at {area.depth[layer]:g} m  ·  {area.about}")
+    style.legend_below(axes, handles, ncol=3)
+    return fig
+
+
+def hatch_unsure(axes, area: Area, layer: int) -> list:
+    """At caustics and the edges of shadows, where rays tell little. → handles"""
+    unsure = area.certainty[layer] == EDGE
+    if not unsure.any():
+        return []
+    x, y = middles(area)
+    axes.contourf(x, y, closed(unsure.astype(float)), levels=[0.5, 1.5], colors="none",
+                  hatches=["//////"], zorder=2.5)
+    return [Patch(fc="none", ec=style.INK, hatch="//////", lw=0.0,
+                  label="edge of a shadow or caustic: uncertain")]
+
+
+def half_detected(axes, area: Area, layer: int) -> list:
+    """The line of a signal excess of 0: detected half of the time. → handles"""
+    excess = area.values["signal_excess_db"][layer]
+    known = np.where(np.isnan(excess), -99.0, np.clip(excess, -99.0, 99.0))
+    if known.min() > 0.0 or known.max() < 0.0:
+        return []
+    axes.contour(*middles(area), closed(known), levels=[0.0], colors=[style.ORANGE], linewidths=1.3,
+                 zorder=5)
+    return [Line2D([], [], color=style.ORANGE, lw=1.3, label="detected half of the time")]
+
+
+# ------------------------------------------------------------------------------------ the sea floor
+
+
+def draw_sea_floor(area: Area, axes=None, limits=None):
+    """Its depth with the ways that platforms and targets go."""
+    fig, axes = square_figure(OTHERS["sea_floor"], axes)
+    low, high = (float(f(area.bottom)) for f in (np.nanmin, np.nanmax))
+    limits = limits or ((low, high) if high > low else (low - 1.0, low + 1.0))
+    mesh = axes.pcolormesh(*edges(area), area.bottom, cmap=style.LOSS_MAP, vmin=limits[0],
+                           vmax=limits[1], rasterized=True, zorder=1)
+    frame(axes, area)
+    handles = contours(axes, area) + marks(axes, area)
+    style.colour_bar(fig, mesh, axes, "depth of the sea floor / m", style.beyond(area.bottom, limits))
+    style.subtitle(axes, area.title)
+    style.legend_below(axes, handles, ncol=3)
+    return fig
+
+
+def draw_sections(area: Area, axes=None, limits=None):
+    """The sea floor along eight bearings, with the target's depths."""
+    fig, axes = style.figure(OTHERS["sections"], 4.8, axes)
+    count = min(8, area.bearing.size)
+    shades = style.colours(count)
+    deepest = float(np.nanmax(area.bottom))
+    for k in range(count):
+        row = int(round(k * area.bearing.size / count)) % area.bearing.size
+        axes.plot(area.range / 1e3, area.bottom[row], color=shades[k], lw=1.5,
+                  label=f"towards {area.bearing[row]:.3g}°")
+    for depth in area.depth:
+        axes.axhline(depth, color=style.INK, lw=1.0, ls=(0, (4, 3)))
+        axes.annotate(f"target {depth:g} m", (1.0, depth), (-4, 4), xycoords=("axes fraction", "data"),
+                      textcoords="offset points", ha="right", fontsize=8, color=style.NOTE)
+    axes.plot([0.0], [area.array[2]], marker="^", ms=8, color=style.INK, ls="none", label="array",
+              clip_on=False)
+    axes.set_xlim(0.0, area.range[-1] / 1e3)
+    axes.set_ylim(1.06 * deepest, 0.0)
+    axes.set_xlabel("horizontal range from the array / km")
+    axes.set_ylabel("depth / m")
+    axes.grid(True)
+    style.subtitle(axes, area.title)
+    style.legend_below(axes, ncol=5)
+    return fig
+
+
+@style.picture
+def draw(area: Area, name: str, layer: int = 0, axes=None, limits=None):
+    if name == "sea_floor":
+        return draw_sea_floor(area, axes, limits)
+    if name == "sections":
+        return draw_sections(area, axes, limits)
+    return draw_map(area, name, layer, axes, limits)

@@ -1,0 +1,304 @@
+// The picture of the area against closed forms, sums done here, and pings' own levels.
+#include "processing/coverage/coverage.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "core/error.h"
+#include "core/geometry.h"
+#include "io/scenario/scenario_reader.h"
+#include "processing/coverage/coverage_of_scenario.h"
+#include "processing/detection_threshold.h"
+#include "sonar/noise/noise_spectrum.h"
+#include "sonar/signal/pulse_coherence.h"
+
+namespace asdic::detail {
+namespace {
+
+/// Straight rays without bounces in water 2000 m deep, over a bottom of Lambert's law.
+constexpr const char* straight = R"(
+[environment]
+wind_speed = 5.0
+[environment.sound_speed]
+kind = "isovelocity"
+speed = 1500.0
+[environment.bottom]
+depth = 2000.0
+kind = "fluid"
+[environment.absorption]
+kind = "none"
+[platform]
+position = [100.0, -50.0, 200.0]
+[transmitter]
+source_level_db = 220.0
+taper = "omnidirectional"
+[pulse]
+kind = "lfm"
+start_frequency = 1450.0
+end_frequency = 1550.0
+duration = 0.1
+window = "none"
+[array]
+kind = "horizontal"
+phones = 1
+spacing = 0.5
+[noise]
+spectral_level_db = 50.0
+[reverberation]
+[reverberation.surface]
+enabled = false
+[reverberation.bottom]
+kind = "lambert"
+mu_db = -27.0
+[propagation]
+max_surface_bounces = 0
+max_bottom_bounces = 0
+[pings]
+recording_duration = 20.0
+sample_rate = 8000.0
+)";
+
+Scenario scenario(const std::string& text, std::vector<std::string> changes = {}) {
+  return parse_scenario(text, "area.toml", changes);
+}
+
+CoverageSettings small(double depth, double reach, int ranges, int bearings = 12) {
+  return {.bearings = bearings, .ranges = ranges, .reach = reach, .depths = {depth}};
+}
+
+// EL = SL + TS − 40 lg R; RL of the ring that sends back at the same delay t = 2R/c, straight down
+// H below: dA/dt = 2πR·c/2, each square metre μ·sin²θ/R⁴ with sin θ = H/R, times ∫|s|²dt.
+TEST(Coverage, OfStraightRaysOverALambertBottom) {
+  const PingSimulator simulator(scenario(straight));
+  const Coverage found = coverage(simulator, small(200.0, 12e3, 60));
+  const CoverageLayer& layer = found.layers.front();
+  const Pulse& pulse = simulator.pulse();
+  const double noise =
+      noise_band_db(simulator.scenario().noise, pulse.centre_frequency(), pulse.bandwidth_40db());
+  constexpr double height = 1800.0, speed = 1500.0;
+  for (std::size_t i = 2; i < found.ranges.size(); ++i)
+    for (const std::size_t j : {0U, 7U}) {
+      const std::size_t cell = j * found.ranges.size() + i;
+      const double range = found.ranges[i];
+      EXPECT_NEAR(double(layer.echo_db[cell]), 220.0 + 10.0 - 40.0 * std::log10(range), 0.05)
+          << range;
+      EXPECT_NEAR(double(layer.two_way_loss_db[cell]), 40.0 * std::log10(range), 0.05) << range;
+      EXPECT_NEAR(double(layer.delay[cell]), 2.0 * range / speed, 1e-5 * range) << range;
+      EXPECT_NEAR(double(layer.noise_db[cell]), noise, 1e-3);
+      if (range < 1.3 * height) continue;  // within a pulse of the first reverberation
+      const double sine = height / range;
+      const double density = pi * speed * power_from_db(-27.0) * sine * sine / std::pow(range, 3);
+      // Over the bins of delay and the pulse, on a curve that falls as R⁻⁵.
+      EXPECT_NEAR(double(layer.reverberation_db[cell]),
+                  220.0 + db_from_power(density * pulse.energy()), 0.1)
+          << range;
+      // One formula of the levels.
+      const double background = db_from_power(
+          power_from_db(double(layer.reverberation_db[cell]) - found.gain.reverberation_db) +
+          power_from_db(double(layer.noise_db[cell]) - found.gain.noise_db));
+      const double snr = double(layer.echo_db[cell]) - background;
+      EXPECT_NEAR(double(layer.signal_excess_db[cell]), snr - found.threshold_db, 1e-3);
+      EXPECT_NEAR(double(layer.detection_probability[cell]),
+                  detection_probability(power_from_db(snr), 1e-4, 24.0), 1e-3);
+      EXPECT_EQ(layer.certainty[cell], std::int8_t(CoverageCertainty::sure));
+      EXPECT_NEAR(double(found.bottom_depth[cell]), 2000.0, 1e-3);
+    }
+}
+
+// What a line receives of sound that comes from all bearings alike under one angle is the mean of
+// its beam over them: left and right together. Noise alike from phone to phone: 10 lg n.
+TEST(Coverage, ABeamOfALineHearsBothItsSides) {
+  const PingSimulator simulator(
+      scenario(straight, {"array.phones=12", "array.spacing=0.5", "array.heading_deg=20"}));
+  const PingSimulator one(scenario(straight));
+  const CoverageSettings settings = small(200.0, 12e3, 24, 36);
+  const Coverage found = coverage(simulator, settings), open = coverage(one, settings);
+  const auto response = [&](double looks, double comes, double elevation) {
+    std::complex<double> sum = 0.0;
+    const Vec3 axis = direction(radians(20.0), 0.0);
+    for (int n = 0; n < 12; ++n)
+      sum += std::polar(1.0, 2.0 * pi * 1500.0 / 1500.0 * 0.5 * (n - 5.5) *
+                                 axis.dot(direction(comes, elevation) - direction(looks, 0.0)));
+    return std::norm(sum) / 144.0;
+  };
+  double loudest = -infinity, quietest = infinity;
+  for (std::size_t j = 0; j < found.bearings.size(); ++j)
+    for (const std::size_t i : {10U, 16U, 23U}) {
+      const std::size_t cell = j * found.ranges.size() + i;
+      const double elevation = -std::asin(1800.0 / found.ranges[i]);
+      double mean = 0.0;
+      constexpr int steps = 2000;
+      for (int k = 0; k < steps; ++k)
+        mean += response(found.bearings[j], 2.0 * pi * (k + 0.5) / steps, elevation) / steps;
+      const double gained = double(found.layers[0].reverberation_db[cell]) -
+                            double(open.layers[0].reverberation_db[cell]);
+      // Elevations lie between nodes some degrees apart.
+      EXPECT_NEAR(gained, db_from_power(mean), 0.3) << j << ' ' << i;
+      EXPECT_NEAR(double(found.layers[0].noise_db[cell]),
+                  double(open.layers[0].noise_db[cell]) - db_from_power(12.0), 1e-3);
+      loudest = std::max(loudest, gained);
+      quietest = std::min(quietest, gained);
+    }
+  // At endfire the main lobe is wide: another beam hears more.
+  EXPECT_GT(loudest, quietest + 2.0);
+}
+
+/// What the matched filter answers to a target in the middle of a part of a cell: the greatest sum
+/// of its echoes at the delay of one of them.
+double answer_to(const Scenario& scenario, const Vec3& place, double strength_db) {
+  Scenario with = scenario;
+  with.reverberation.enabled = false;
+  Target target;
+  target.strength_db = strength_db;
+  target.track.start = {place, Vec3::Zero()};
+  with.targets = {target};
+  const PingSimulator simulator(with);
+  const PingRecord record = simulator.levels(1);
+  const auto coherence = pulse_coherence(simulator.pulse());
+  double most = 0.0;
+  for (const EchoPath& at : record.echoes) {
+    std::complex<double> sum = 0.0;
+    for (const EchoPath& echo : record.echoes)
+      sum += echo.received.amplitude *
+             std::polar(1.0, -2.0 * pi * simulator.pulse().centre_frequency() *
+                                 (echo.received.delay - at.received.delay)) *
+             (*coherence)(at.received.delay - echo.received.delay);
+    most = std::max(most, std::norm(sum));
+  }
+  return most;
+}
+
+/// How far the picture may be from pings [dB]: in a cell, and as a mean over those looked at.
+struct Tolerance {
+  double cell = 0.0, mean = 0.0;
+};
+
+/// The picture of a scenario against pings at targets in some of its cells.
+void hold_against_pings(const Scenario& whole, double depth, double reach, const Tolerance& echo,
+                        const Tolerance& reverberation) {
+  constexpr int ranges = 200, bearings = 36, points = 7, j = 3;
+  constexpr std::array cells = {30, 50, 75, 101, 130, 160};
+  const Coverage found = coverage(PingSimulator(whole), small(depth, reach, ranges, bearings));
+  const double step = reach / ranges, bearing = found.bearings[std::size_t(j)];
+  double echoes = 0.0, reverberations = 0.0;
+  for (const int i : cells) {
+    const auto cell = static_cast<std::size_t>(j * ranges + i);
+    const auto place = [&](double r) {
+      return Vec3(found.receiver.x() + r * std::sin(bearing),
+                  found.receiver.y() + r * std::cos(bearing), depth);
+    };
+    const double range = found.ranges[std::size_t(i)];
+    double mean = 0.0;
+    for (int k = 0; k < points; ++k)
+      mean += answer_to(whole, place(range + ((k + 0.5) / points - 0.5) * step), 10.0) / points;
+    const double off =
+        double(found.layers[0].echo_db[cell]) - (found.source_level_db + db_from_power(mean));
+    EXPECT_LT(std::abs(off), echo.cell) << i;
+    echoes += off / cells.size();
+    Scenario with = whole;
+    Target target;
+    target.track.start = {place(range), Vec3::Zero()};
+    with.targets = {target};
+    const TargetSummary truth = PingSimulator(with).levels(1).summary.front();
+    const double noisy = double(found.layers[0].reverberation_db[cell]) - truth.reverberation_db;
+    EXPECT_LT(std::abs(noisy), reverberation.cell) << i;
+    reverberations += noisy / cells.size();
+  }
+  EXPECT_LT(std::abs(echoes), echo.mean);
+  EXPECT_LT(std::abs(reverberations), reverberation.mean);
+}
+
+// Single phones, so that a level is that of all bearings, as a ping tells it. Seven points of a
+// cell are a mean to about a decibel where paths interfere; the picture asks the filter at fewer
+// delays. A ping's expected level is that of rings some metres apart: in shallow water some 30 of
+// them fall into a pulse, each with a pattern of paths of its own, which is ±0.8 dB.
+TEST(Coverage, OfADeepOceanIsThatOfPings) {
+  hold_against_pings(read_scenario(std::string(ASDIC_SCENARIOS) + "/deep_ocean.toml",
+                                   std::vector<std::string>{"array.phones=1"}),
+                     150.0, 30e3, {1.2, 0.6}, {0.3, 0.15});
+}
+
+constexpr const char* shallow = R"(
+[environment]
+wind_speed = 5.0
+[environment.sound_speed]
+kind = "isovelocity"
+speed = 1500.0
+[environment.bottom]
+depth = 100.0
+kind = "fluid"
+speed = 1700.0
+density = 1900.0
+attenuation_db_per_wavelength = 0.8
+[environment.absorption]
+kind = "thorp"
+[platform]
+position = [0.0, 0.0, 8.0]
+[transmitter]
+source_level_db = 215.0
+beamwidth_deg = 20.0
+[pulse]
+kind = "lfm"
+start_frequency = 3800.0
+end_frequency = 4200.0
+duration = 0.2
+[array]
+kind = "horizontal"
+phones = 1
+spacing = 0.5
+[noise]
+spectral_level_db = 50.0
+[reverberation.bottom]
+kind = "lambert"
+mu_db = -27.0
+[propagation]
+max_surface_bounces = 6
+max_bottom_bounces = 6
+[pings]
+recording_duration = 8.0
+sample_rate = 16000.0
+)";
+
+TEST(Coverage, OfShallowWaterIsThatOfPings) {
+  hold_against_pings(scenario(shallow), 40.0, 4e3, {2.5, 0.8}, {2.0, 0.6});
+}
+
+TEST(Coverage, SaysWhereADepthIsNoWaterAndWhereNoRayComes) {
+  const Coverage found = coverage(PingSimulator(scenario(straight)), small(2500.0, 5e3, 10));
+  for (const std::int8_t certainty : found.layers[0].certainty)
+    EXPECT_EQ(certainty, std::int8_t(CoverageCertainty::no_water));
+  // A shadow: sound speed falls with depth, the source is shallow.
+  const PingSimulator shadow(scenario(
+      straight, {"environment.sound_speed={kind=\"table\",depth=[0,2000],speed=[1520,1420]}",
+                 "propagation.diffraction=false"}));
+  const Coverage dark = coverage(shadow, small(20.0, 40e3, 50));
+  EXPECT_EQ(dark.layers[0].certainty[2], std::int8_t(CoverageCertainty::sure));
+  EXPECT_EQ(dark.layers[0].certainty[49], std::int8_t(CoverageCertainty::no_path));
+  EXPECT_TRUE(std::isinf(dark.layers[0].uncertainty_db[49]));
+  EXPECT_NEAR(double(dark.layers[0].detection_probability[49]), 1e-4, 1e-6);
+}
+
+TEST(Coverage, NamesTheOptionThatIsWrong) {
+  const Scenario sea = scenario(straight);
+  const auto fault = [&](const AreaWishes& wishes) {
+    try {
+      static_cast<void>(coverage(PingSimulator(sea), coverage_settings(sea, wishes)));
+    } catch (const InputError& error) {
+      return error.fault().where;
+    }
+    return std::string("none");
+  };
+  EXPECT_EQ(fault({}), "--depth");
+  EXPECT_EQ(fault({.depths = {100.0}, .array = "bow"}), "--array");
+  EXPECT_EQ(fault({.depths = {-5.0}}), "--depth");
+  EXPECT_EQ(fault({.depths = {100.0}, .reach = -1.0}), "--reach");
+  EXPECT_EQ(fault({.depths = {100.0}, .ping = 9}), "--ping");
+  EXPECT_EQ(fault({.depths = {100.0}, .fluctuation = "often"}), "--fluctuation");
+}
+
+}  // namespace
+}  // namespace asdic::detail
