@@ -68,14 +68,10 @@ int area(AreaOptions& options) {
     throw RunError("interrupted; no file was written");
   }
   if (!options.quiet) warn(found.warnings);
+  write_area(std::move(output), found, simulator->scenario());
   ResultOrigin origin = origin_of(simulator->scenario());
   origin.path = choice.path;
-  origin.overrides = choice.overrides;
   origin.warnings.insert(origin.warnings.end(), found.warnings.begin(), found.warnings.end());
-  Hdf5Output made(std::move(output));
-  write_root(made.file(), "asdic area", origin);
-  write_coverage(made.file(), found, simulator->scenario());
-  made.finish();
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   const CoverageSummary summary = summary_of(found, origin.title);
   if (options.json)

@@ -7,11 +7,14 @@
 #include "io/ping/ping_file.h"
 #include "io/ping/provenance.h"
 #include "io/processing/recordings.h"
+#include "io/result/coverage_file.h"
 #include "io/result/scene_file.h"
 #include "io/scenario/propagation.h"
 #include "io/scenario/scenario_reader.h"
 #include "library/physics.h"
 #include "library/ping_access.h"
+#include "library/watched.h"
+#include "processing/coverage/coverage_of_scenario.h"
 
 namespace asdic {
 namespace {
@@ -113,6 +116,34 @@ void write_scene(const std::filesystem::path& path, const Scenario& scenario) {
       return detail::write_scene(path, detail::scenario_of(data.document, data.path));
     std::vector<std::string> notes;
     detail::write_scene(path, detail::propagation_case_of(data.document, data.path, notes));
+  });
+}
+
+std::vector<std::string> write_area(const std::filesystem::path& path, const Scenario& scenario,
+                                    const AreaOptions& options, const Watch& watch) {
+  return watched(watch, [&] {
+    detail::OutputFile output(path, {.own = detail::own::hdf5, .option = "path"});
+    const detail::PingSimulator& simulator = Access::physics(scenario).simulator();
+    const detail::AreaWishes wishes{.depths = options.depths,
+                                    .reach = options.reach,
+                                    .strength_db = options.strength_db,
+                                    .fluctuation = options.fluctuation,
+                                    .transmitter = options.transmitter,
+                                    .array = options.array,
+                                    .ping = options.ping,
+                                    .bearings = options.bearings,
+                                    .ranges = options.ranges,
+                                    .false_alarm_probability = options.false_alarm_probability,
+                                    .reference_cells = options.reference_cells};
+    const detail::Coverage found = detail::coverage(
+        simulator, detail::coverage_settings(simulator.scenario(), wishes), [&](double share) {
+          if (watch.progress) watch.progress(static_cast<int>(1000.0 * share), 1000);
+          return true;
+        });
+    detail::write_area(std::move(output), found, simulator.scenario());
+    std::vector<std::string> all = simulator.scenario().notes;
+    all.insert(all.end(), found.warnings.begin(), found.warnings.end());
+    return all;
   });
 }
 

@@ -16,6 +16,8 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "asdic/export.h"
 #include "asdic/ping.h"
@@ -60,6 +62,27 @@ ASDIC_API void write_pings(const std::filesystem::path& path, const Scenario& sc
 /// What a scenario says of the sea and of who is where in it, for `asdic plot` to draw before
 /// anything is computed. A file that is there is replaced. \throws InputError, RunError
 ASDIC_API void write_scene(const std::filesystem::path& path, const Scenario& scenario);
+
+/// What an area is asked to show: as `asdic area`; what is left out is the scenario's.
+struct ASDIC_API AreaOptions {
+  std::vector<double> depths = {};              ///< of the target [m]
+  std::optional<double> reach = {};             ///< [m]
+  std::optional<double> strength_db = {};       ///< of the target at every aspect [dB]
+  std::optional<std::string> fluctuation = {};  ///< none, swerling-1 … swerling-4
+  std::optional<std::string> transmitter = {};  ///< a name
+  std::optional<std::string> array = {};        ///< a name
+  std::optional<int> ping = {};                 ///< of the run, from 1
+  int bearings = 360, ranges = 500;             ///< cells
+  double false_alarm_probability = 1e-4;        ///< of a cell
+  double reference_cells = 24.0;                ///< averaged for the background; 0: it is known
+};
+/// What a sonar sees of the area around it: echo, reverberation, noise, signal excess and
+/// probability of detection over bearing and range, as a file (docs/formats/area.md). A file that
+/// is there is replaced. \return warnings   \throws InputError, RunError, Stopped
+ASDIC_API std::vector<std::string> write_area(const std::filesystem::path& path,
+                                              const Scenario& scenario,
+                                              const AreaOptions& options = {},
+                                              const Watch& watch = {});
 
 /// A ping of a file. Of a continuous record: all that is received of it, over the pings that
 /// follow. \throws InputError, RunError

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 #include "core/error.h"
 #include "io/hdf5/scale.h"
@@ -133,6 +134,15 @@ void write_coverage(Hdf5File& file, const Coverage& found, const Scenario& scena
   describe(file, "bottom_depth", "depth of the sea floor, positive down", "m", cf::sea_floor);
   file.attach_scales("bottom_depth", {"bearing", "range"});
   write_tracks(file, scenario);
+}
+
+void write_area(OutputFile&& to, const Coverage& found, const Scenario& scenario) {
+  ResultOrigin origin = origin_of(scenario);
+  origin.warnings.insert(origin.warnings.end(), found.warnings.begin(), found.warnings.end());
+  Hdf5Output output(std::move(to));
+  write_root(output.file(), "asdic area", origin);
+  write_coverage(output.file(), found, scenario);
+  output.finish();
 }
 
 CoverageSummary summary_of(const Coverage& found, const std::string& title) {

@@ -1,5 +1,6 @@
 #pragma once
-#include "io/hdf5/hdf5_file.h"
+#include "io/hdf5/hdf5_output.h"
+#include "io/result/result_root.h"
 #include "processing/coverage/coverage.h"
 #include "sonar/scenario/scenario.h"
 
@@ -8,6 +9,9 @@ namespace asdic::detail {
 /// Writes the datasets and attributes of docs/formats/area.md, but for the root's (filetype,
 /// provenance), into an open file. \param scenario  that it is of: its tracks
 void write_coverage(Hdf5File& file, const Coverage& found, const Scenario& scenario);
+
+/// The whole file. \param scenario  as it was read; what was found warns on
+void write_area(OutputFile&& to, const Coverage& found, const Scenario& scenario);
 
 /// Depth, levels and shares of an area file, for people.
 struct CoverageSummary {

@@ -207,6 +207,7 @@ class Maker {
   }
 
   void find_bounces() {
+    if (!paths_.layered()) return find_bounces_of_planes();
     // To the target: of the nearest, a middle and the farthest range.
     const auto judged = [&](const Vec3& from, double share, double depth) {
       const double bearing = 2.0 * pi * share;
@@ -228,6 +229,39 @@ class Maker {
           reverberation_bounces(part, ends(), fans, fan, paths_.layered(), scenario_, at));
       made_.followed.include(to_part_.back());
     }
+  }
+
+  /// Of planes in four directions: those after which every range lacks next to nothing of the
+  /// energy that comes to the target's depth and, twice, to what scatters.
+  void find_bounces_of_planes() {
+    constexpr std::size_t segments = 32;
+    constexpr int directions = 4;
+    const double reach = settings_.reach + apart();
+    const BounceSearch search{.most = most_over_slopes, .segments = segments, .latest = reach};
+    const Bounces enough = search_bounces(
+        scenario_.propagation, search, [&](const PathLimits& limits, ReceivedBounces& received) {
+          std::vector<WantedLevel> levels;
+          for (const double depth : settings_.depths) levels.push_back({level_of(depth), limits});
+          for (const ScatteringPart& part : parts_) levels.push_back({part.level, limits});
+          const PlaneFans fans(paths_, source(), levels, reach / 128.0, reach, frequency());
+          std::vector<PlaneFans::Fans> found(directions);
+          in_parallel(directions, [&](std::size_t i) {
+            found[i] = fans.at(2.0 * pi * (double(i) + 0.3) / 4.0);
+          });
+          for (const PlaneFans::Fans& plane : found)
+            for (std::size_t level = 0; level < plane.size(); ++level) {
+              const BoundaryPaths& paths = *plane[level]->planes.front().paths;
+              for (std::size_t cell = 0; cell < paths.cells(); ++cell)
+                for (const BoundaryPath& path : paths.paths(cell)) {
+                  const double power = std::norm(path.amplitude), sine = std::sin(path.grazing);
+                  received.add(paths.range(cell), path.surface_bounces, path.bottom_bounces,
+                               level < settings_.depths.size() ? power : power * sine);
+                }
+            }
+        });
+    to_target_ = enough;
+    to_part_.assign(parts_.size(), enough);
+    made_.followed = enough;
   }
 
   [[nodiscard]] double reverberation_reach() const {
@@ -279,6 +313,15 @@ class Maker {
     if (at.source.position.z() != receiver().z() || !(together() || paths_.layered()))
       back_ = fans(at.receiver.position);
     made_.planes = paths_.layered() ? 1 : settings_.bearings * (back_ ? 2 : 1);
+    if (paths_.layered() || together()) return;
+    // From the array a cell's bearing is its plane's; from the source any may be.
+    constexpr int most = 180;
+    const int sectors = std::min(settings_.bearings, most);
+    all_round_ = out_->all_round(sectors);
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+      out_groups_.push_back(
+          std::make_shared<FanGroups>(*all_round_[first_part_ + i], alike(parts_[i]), frequency()));
+    made_.planes = sectors + settings_.bearings;
   }
 
   /// Fans of both ends that lie in the plane of a bearing from the array.
@@ -286,7 +329,7 @@ class Maker {
     PlaneFans::Fans out, back;
   };
   [[nodiscard]] Ends fans_at(double bearing) const {
-    Ends found{.out = out_->at(bearing), .back = {}};
+    Ends found{.out = all_round_.empty() ? out_->at(bearing) : all_round_, .back = {}};
     found.back = back_ ? back_->at(bearing) : found.out;
     return found;
   }
@@ -513,7 +556,8 @@ class Maker {
                                                            : paths_.bottom_depth(place);
     };
     ScatteringSheet::Groups groups;
-    groups.out = std::make_shared<FanGroups>(*out, alike(part), frequency());
+    groups.out = out_groups_.empty() ? std::make_shared<FanGroups>(*out, alike(part), frequency())
+                                     : out_groups_[number];
     groups.back =
         out == back ? groups.out : std::make_shared<FanGroups>(*back, alike(part), frequency());
     const ScatteringSheet sheet(out, back, part.law, at, pattern_, groups);
@@ -644,11 +688,13 @@ class Maker {
   struct Both {
     std::vector<Arrivals> out, back;  // [ranges]; back: none, it is the same
   };
-  std::vector<Both> arrivals_;                     // [depths], where echoes are by_arrivals()
-  std::size_t first_part_ = 0;                     // of the fans' levels, that is of reverberation
-  std::unique_ptr<PlaneFans> out_, back_;          // back_: none, it is the same
-  std::array<std::vector<float>, kinds> density_;  // [bins][bearings × nodes] [1/s]
-  std::vector<std::vector<float>> elevation_;      // of the echo, [depths][cells] [rad]
+  std::vector<Both> arrivals_;  // [depths], where echoes are by_arrivals()
+  std::size_t first_part_ = 0;  // of the fans' levels, that is of reverberation
+  PlaneFans::Fans all_round_;   // of a source that is elsewhere, over slopes
+  std::vector<std::shared_ptr<FanGroups>> out_groups_;  // [parts] of those
+  std::unique_ptr<PlaneFans> out_, back_;               // back_: none, it is the same
+  std::array<std::vector<float>, kinds> density_;       // [bins][bearings × nodes] [1/s]
+  std::vector<std::vector<float>> elevation_;           // of the echo, [depths][cells] [rad]
 };
 
 void check(const PingSimulator& simulator, const CoverageSettings& settings) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "raytrace/parallel/parallel.h"
+
 namespace asdic::detail {
 
 PlaneFans::PlaneFans(const PropagationPaths& paths, const Vec3& place,
@@ -26,8 +28,8 @@ PlaneFans::PlaneFans(const PropagationPaths& paths, const Vec3& place,
                                         .limits = wanted.limits}));
 }
 
-PlaneFans::Fans PlaneFans::at(double bearing) const {
-  if (paths_.layered() || levels_.empty()) return everywhere_;
+/// The planes of one direction. [levels]
+std::vector<FanPlane> PlaneFans::planes(double bearing) const {
   // One fan for all levels, with the most bounces that any of them asks for.
   PathLimits limits = levels_.front().limits;
   std::vector<GroundLevel> levels;
@@ -41,11 +43,37 @@ PlaneFans::Fans PlaneFans::at(double bearing) const {
   const Plane plane = paths_.plane(place_, bearing, reach_);
   std::vector<BoundaryPaths> all = mean_paths(*paths_.solver(plane), place_.z(), levels, spacing_,
                                               reach_, frequency_, limits, rays);
+  std::vector<FanPlane> found;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    found.push_back(fans_.plane_of(place_, plane, levels[i],
+                                   std::make_shared<const BoundaryPaths>(std::move(all[i]))));
+  return found;
+}
+
+PlaneFans::Fans PlaneFans::at(double bearing) const {
+  if (paths_.layered() || levels_.empty()) return everywhere_;
   Fans found;
-  for (std::size_t i = 0; i < all.size(); ++i) {
+  for (FanPlane& plane : planes(bearing)) {
     auto fan = std::make_shared<BoundaryFan>();
-    fan->planes.push_back(fans_.plane_of(place_, plane, levels[i],
-                                         std::make_shared<const BoundaryPaths>(std::move(all[i]))));
+    fan->planes.push_back(std::move(plane));
+    found.push_back(std::move(fan));
+  }
+  return found;
+}
+
+PlaneFans::Fans PlaneFans::all_round(int sectors) const {
+  if (paths_.layered() || levels_.empty()) return everywhere_;
+  const auto count = static_cast<std::size_t>(sectors);
+  std::vector<std::vector<FanPlane>> all(count);
+  in_parallel(count, [&](std::size_t i) {
+    all[i] = planes(2.0 * pi * (static_cast<double>(i) + 0.5) / sectors);
+  });
+  Fans found;
+  for (std::size_t level = 0; level < levels_.size(); ++level) {
+    auto fan = std::make_shared<BoundaryFan>();
+    fan->sectors = sectors;
+    fan->mirrored = false;
+    for (std::vector<FanPlane>& planes : all) fan->planes.push_back(std::move(planes[level]));
     found.push_back(std::move(fan));
   }
   return found;

@@ -27,8 +27,12 @@ class PlaneFans {
   using Fans = std::vector<std::shared_ptr<const BoundaryFan>>;  // [levels]
   /// \param bearing  [rad]
   [[nodiscard]] Fans at(double bearing) const;
+  /// Fans of all directions, a plane a sector; of a layered ocean as at().
+  [[nodiscard]] Fans all_round(int sectors) const;
 
  private:
+  [[nodiscard]] std::vector<FanPlane> planes(double bearing) const;
+
   const PropagationPaths& paths_;
   BoundaryFans fans_;
   Vec3 place_;

@@ -11,6 +11,7 @@ docs/guide/python.md
 """
 from ._core import Arrivals, InputError, RunError, Stopped, build, version
 from . import bellhop
+from .areas import area
 from .channel import Channel
 from .datasets import group
 from .files import open  # noqa: A004  asdic.open
@@ -32,5 +33,5 @@ def __getattr__(name: str):
 
 
 __all__ = ["Arrivals", "AsdicWarning", "Channel", "InputError", "Measure", "Ocean", "Processed",
-           "RunError", "Scenario", "Stopped", "StudyResult", "bellhop", "build", "group", "ocean",
+           "RunError", "Scenario", "Stopped", "StudyResult", "area", "bellhop", "build", "group", "ocean",
            "open", "page", "process", "read_study", "settings", "study", "version"]

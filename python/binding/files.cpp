@@ -18,6 +18,28 @@ void add_files(py::module_& module) {
       return true;
     });
   });
+  module.def("write_area", [](const std::filesystem::path& path, const Scenario& scenario,
+                              const std::vector<double>& depths, std::optional<double> reach,
+                              int bearings, int ranges, std::optional<double> strength_db,
+                              std::optional<std::string> fluctuation,
+                              double false_alarm_probability, double reference_cells,
+                              std::optional<std::string> transmitter,
+                              std::optional<std::string> array, std::optional<int> ping,
+                              const py::object& progress) {
+    const AreaOptions options{.depths = depths,
+                              .reach = reach,
+                              .strength_db = strength_db,
+                              .fluctuation = std::move(fluctuation),
+                              .transmitter = std::move(transmitter),
+                              .array = std::move(array),
+                              .ping = ping,
+                              .bearings = bearings,
+                              .ranges = ranges,
+                              .false_alarm_probability = false_alarm_probability,
+                              .reference_cells = reference_cells};
+    return watched([&](const Watch& watch) { return write_area(path, scenario, options, watch); },
+                   progress);
+  });
   module.def("write_pings", [](const std::filesystem::path& path, const Scenario& scenario,
                                const py::object& progress) {
     watched(

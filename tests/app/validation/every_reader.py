@@ -227,6 +227,12 @@ class Files:
             files += [f"{name}_done.h5", f"{name}_bare.h5"]
         return files
 
+    def kind_area(self):
+        (self.folder / "area.toml").write_text(sea())
+        self.asdic("area", "area.toml", "-o", "area.h5", "--quiet", "--depth", "50,120", "--reach",
+                   "2km", "--bearings", "12", "--ranges", "20")
+        return ["area.h5"]
+
     def kind_field(self):
         cases = {"grid": run_of("field"), "incoherent": run_of("field", "incoherent"),
                  "places": run_of("field", irregular=True)}
@@ -291,7 +297,7 @@ class Files:
                    stdin='{"asdic": 1}\n{"command": "ping"}\n')
         return [str(p.relative_to(self.folder)) for p in self.folder.glob("served/**/*.h5")]
 
-    KINDS = ["ping", "processed", "field", "arrivals", "rays", "converted", "study", "served"]
+    KINDS = ["ping", "processed", "area", "field", "arrivals", "rays", "converted", "study", "served"]
 
     def others(self):
         """Results in other formats, which `asdic info` reads."""

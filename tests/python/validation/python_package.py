@@ -33,6 +33,42 @@ def run(*words) -> str:
                           text=True).stdout
 
 
+class Areas(unittest.TestCase):
+    def test_it_is_what_the_program_writes(self):
+        scenario = SCENARIOS / "isovelocity.toml"
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "area.h5"
+            run("area", scenario, "-o", path, "-q", "--depth", "40,80", "--reach", "3km",
+                "--bearings", 24, "--ranges", 30, "--fluctuation", "swerling-1")
+            told = json.loads(run("area", scenario, "-o", Path(folder) / "same.h5", "--json", "--depth",
+                                  "40,80", "--reach", "3000", "--bearings", 24, "--ranges", 30,
+                                  "--fluctuation", "swerling-1"))
+            read = asdic.open(path, load=True)
+            self.assertIn("24 bearings x 30 ranges to 3 km", run("info", path))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            made = asdic.area(asdic.Scenario(scenario), [40.0, 80.0], reach=3e3, bearings=24, ranges=30,
+                              fluctuation="swerling-1")
+        self.assertEqual(dict(made.sizes) | dict(depth=2, bearing=24, range=30), dict(made.sizes))
+        for name in read.data_vars:
+            np.testing.assert_array_equal(made[name].values, read[name].values, err_msg=name)
+        # Where nothing fluctuates so, half is detected at an excess of 0.
+        excess, probability = made.signal_excess_db.values, made.detection_probability.values
+        self.assertTrue(np.all((probability > 0.5) == (excess > 0.0)))
+        self.assertEqual([d["depth"] for d in told["depths"]], [40.0, 80.0])
+        share = (np.where(probability[0] >= 0.5, 1.0, 0.0) * made.range.values).sum() \
+            / (24 * made.range.values.sum())
+        self.assertAlmostEqual(told["depths"][0]["detected_pct"], 100.0 * share, places=3)
+
+    def test_faults_name_the_option(self):
+        scenario = asdic.Scenario(SCENARIOS / "isovelocity.toml")
+        with self.assertRaises(asdic.InputError) as raised:
+            asdic.area(scenario, 40.0, array="bow")
+        self.assertIn('--array: found "bow"', str(raised.exception))
+        with self.assertRaises(asdic.InputError):
+            asdic.area(scenario, -1.0)
+
+
 class Settings(unittest.TestCase):
     def setUp(self):
         self.s = asdic.Scenario(SCENARIOS / "deep_ocean.toml")
