@@ -43,9 +43,9 @@ from asdic_pictures.output import Tags as _Tags
 
 from . import _core, described, files
 
-__all__ = ["ambiguity", "array", "arrivals", "bearing_time", "compare", "detections", "geometry",
-           "levels", "matched_filter", "pressure", "range_bearing", "rays", "save", "sound_speed",
-           "spectrogram", "study", "sweep", "tracks", "transmission_loss"]
+__all__ = ["ambiguity", "area", "array", "arrivals", "bearing_time", "compare", "detections",
+           "geometry", "levels", "matched_filter", "ppi", "pressure", "range_bearing", "rays",
+           "save", "sound_speed", "spectrogram", "study", "sweep", "tracks", "transmission_loss"]
 
 
 class _Over:
@@ -177,6 +177,11 @@ def bearing_time(source, axes=None, **options):
     return _of_ping("bearing_time", source, axes, options)
 
 
+def ppi(source, axes=None, **options):
+    """The beams on the map, north up, with detections and the truth in true bearing."""
+    return _of_ping("ppi", source, axes, options)
+
+
 def levels(source, axes=None, **options):
     """Level over time: echo, reverberation, noise, and what is measured."""
     return _of_ping("levels", source, axes, options)
@@ -232,6 +237,15 @@ def arrivals(source, axes=None, **options):
     """Arrivals as stems, at up to three receivers (an axes each)."""
     with _result(source) as found:
         return _api.of_result(found, "arrivals", axes, **options)
+
+
+def area(source, axes=None, what="signal_excess", **options):
+    """A map of what a sonar sees, of :func:`asdic.area` or a file of it. ``what=`` signal_excess,
+    detection_probability, echo_level, reverberation_level, sea_floor or sections; ``depth=`` of the
+    target [m], where there are several.
+    """
+    with _told():
+        return _api.of_area(what, source, axes, **options)
 
 
 def compare(a, b, names=("A", "B"), axes=None, **options):

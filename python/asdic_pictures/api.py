@@ -17,14 +17,14 @@ from . import style as _style
 from .data import InputError
 from .output import Tags
 
-OF_PINGS = ("rays", "pressure", "bearing_time", "levels", "spectrogram", "matched_filter", "sweep",
-            "detections", "range_bearing", "ambiguity", "tracks")
+OF_PINGS = ("rays", "pressure", "bearing_time", "ppi", "levels", "spectrogram", "matched_filter",
+            "sweep", "detections", "range_bearing", "ambiguity", "tracks")
 PROCESSED = ("detections", "range_bearing", "ambiguity", "tracks")
 OF_RESULTS = ("transmission_loss", "arrivals", "rays")
 OF_SCENES = ("geometry", "sound_speed", "array")
 OF_AREAS = _area.ALL
 OF_ALL_ARRAYS = ("rays", "levels", "ambiguity")
-WITH_LIMITS = ("pressure", "bearing_time", "levels", "spectrogram", "matched_filter", "sweep",
+WITH_LIMITS = ("pressure", "bearing_time", "ppi", "levels", "spectrogram", "matched_filter", "sweep",
                "detections", "range_bearing", "ambiguity", "transmission_loss", "arrivals",
                *_area.MAPS, "sea_floor")
 
@@ -67,7 +67,7 @@ def select(data, name: str, row: int, array) -> str | None:
     number = array if isinstance(array, int) else data.choose_array(array) if array else 0
     data.select_array(number)
     reason = draws.nothing_to_show(data, row)
-    if name == "range_bearing" and reason and not array:
+    if name in ("ppi", "range_bearing") and reason and not array:
         for other in range(1, len(data.array_names)):
             data.select_array(other)
             if not draws.nothing_to_show(data, row):

@@ -119,10 +119,7 @@ def closed(values):
 
 def square_figure(title: str, axes):
     """About as wide as the map, or the caller's axes."""
-    fig, axes = style.figure(title, 7.6, axes)
-    if isinstance(fig, style.Picture):
-        fig.set_figwidth(8.3)
-    return fig, axes
+    return style.figure(title, 8.8, axes)
 
 
 def frame(axes, area: Area) -> None:

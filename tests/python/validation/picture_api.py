@@ -246,5 +246,49 @@ class Before(Case):
                     self.assertEqual(faults(draw(path)), [], (name, draw.__name__))
 
 
+
+class Areas(Case):
+    """What a sonar sees of the area, and a ping on the map."""
+
+    def test_every_map_of_a_dataset_and_of_its_file(self):
+        found = asdic.area(asdic.Scenario.parse(SEA), [100.0, 400.0], reach=3e3, bearings=24, ranges=30)
+        drawn = {name: pictures.area(found, what=name, depth=400.0)
+                 for name in ("signal_excess", "echo_level", "sea_floor", "sections")}
+        self.assertEqual(faults(drawn["signal_excess"]), [])
+        shown = drawn["echo_level"].axes[0].collections[0].get_array()
+        np.testing.assert_array_equal(np.ravel(shown), np.ravel(found.echo_db.sel(depth=400.0).values))
+        with self.assertRaisesRegex(asdic.InputError, "depth: found 5 m, expected one of 100, 400"):
+            pictures.area(found, depth=5.0)
+        with self.assertRaisesRegex(asdic.InputError, "reverberation_level"):   # there is none
+            pictures.area(found, what="reverberation_level")
+        (self.folder / "sea.toml").write_text(SEA)
+        for words in (["area", "sea.toml", "-o", "area.h5", "-q", "--reach", "3km", "--bearings", "24",
+                       "--ranges", "30"], ["plot", "area.h5", "-o", "p", "--only", "signal_excess"]):
+            done = subprocess.run([PROGRAM, *words], cwd=self.folder, capture_output=True, text=True)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual([p.name for p in (self.folder / "p").iterdir()], ["signal_excess.png"])
+
+    def test_a_ping_on_the_map(self):
+        """The loudest cell of the map is at the target, by its bearing, or at its mirror image; its range is
+        that of the slant way. Of a bistatic pair any scatterer's range comes out of its delay.
+        """
+        from asdic_pictures import ppi
+        ping = asdic.Scenario.parse(SEA).ping()
+        fig = pictures.ppi(ping)
+        mesh = fig.axes[0].collections[0]
+        corners, power = mesh.get_coordinates(), np.ma.filled(mesh.get_array(), -np.inf)
+        k = np.unravel_index(power.argmax(), power.shape)
+        x, y = corners[k[0]:k[0] + 2, k[1]:k[1] + 2].reshape(-1, 2).mean(axis=0)
+        way = np.hypot(2500.0, 200.0) / 1e3
+        self.assertLess(abs(np.hypot(x, y) - way), 0.2)     # the pulse is 188 m long
+        self.assertLess(abs(y - 1.5) / way, 0.1)            # a line to the north hears both its sides
+        draw = np.random.default_rng(7)
+        for source, place in draw.uniform(-5e3, 5e3, (20, 2, 2)):
+            delay = (np.hypot(*(place - source)) + np.hypot(*place)) / 1500.0
+            found = ppi.ranges([delay], [np.arctan2(*place)], np.hypot(*source), np.arctan2(*source),
+                               1500.0)
+            self.assertAlmostEqual(found[0, 0], np.hypot(*place), delta=1e-6 * np.hypot(*place) + 1e-6)
+
+
 if __name__ == "__main__":
     unittest.main(verbosity=1)
