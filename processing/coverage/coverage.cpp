@@ -124,6 +124,7 @@ class Maker {
     make_fans();
     walk_bearings();
     look_through_beams();
+    tell_limits();
     return std::move(made_);
   }
 
@@ -262,6 +263,23 @@ class Maker {
     to_target_ = enough;
     to_part_.assign(parts_.size(), enough);
     made_.followed = enough;
+  }
+
+  /// What to know before trusting the picture.
+  void tell_limits() {
+    const auto tell_of = [&](bool there, const std::string& text) {
+      if (there) made_.warnings.push_back(text);
+    };
+    tell_of(!scenario_.interferers.empty(),
+            "interferer: the noise of ships is not in the picture of the area");
+    tell_of(pulse_.duration() * pulse_.bandwidth_99() < 10.0 && !parts_.empty(),
+            "pulse: the picture of the area does not filter by Doppler; a target that moves stands "
+            "out better from reverberation");
+    tell_of(!paths_.layered(),
+            "environment: over slopes and fronts the picture of the area is right as a mean over "
+            "cells; a cell by itself may be off by its uncertainty_db");
+    const std::string bounces = lacking(scenario_.propagation, made_.followed, "the picture");
+    tell_of(!bounces.empty(), bounces);
   }
 
   [[nodiscard]] double reverberation_reach() const {
@@ -500,7 +518,10 @@ class Maker {
       layer.two_way_loss_db[cell] = static_cast<float>(-db_from_power(echo.open_power));
       elevation_[depth][cell] = static_cast<float>(echo.elevation);
       if (echo.power > 0.0) layer.delay[cell] = static_cast<float>(echo.delay);
-      if (rays) layer.uncertainty_db[cell] = static_cast<float>(echo.spread_db);
+      // Fans that are right as means do not tell their paths' phases.
+      if (rays)
+        layer.uncertainty_db[cell] = static_cast<float>(
+            paths_.layered() ? echo.spread_db : std::max(echo.spread_db, echo.phases_db));
     }
     find_edges(layer, first, paths);
   }

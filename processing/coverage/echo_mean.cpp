@@ -130,7 +130,17 @@ EchoMean EchoMeans::operator()(std::span<const EchoLeg> out, std::span<const Ech
                                const EchoCell& cell) {
   pair_up(out, back, cell);
   if (pairs_.empty()) return {};
-  return turns_slowly() ? over_places() : over_phases();
+  EchoMean found = turns_slowly() ? over_places() : over_phases();
+  // As if every phase were another one: 1 − Σp²/(Σp)² of the power fluctuates.
+  double sum = 0.0, squares = 0.0;
+  for (const Pair& p : pairs_) {
+    const double power = p.power * std::norm(pulse_(found.delay - p.delay));
+    sum += power;
+    squares += power * power;
+  }
+  if (sum > 0.0)
+    found.phases_db = exponential_db * std::sqrt(std::max(0.0, 1.0 - squares / (sum * sum)));
+  return found;
 }
 
 EchoMean EchoMeans::over_phases() {

@@ -30,6 +30,7 @@ struct EchoMean {
   double delay = 0.0;       ///< of the loudest answer [s]
   double elevation = 0.0;   ///< at which its sound comes to the array, positive from above [rad]
   double spread_db = 0.0;   ///< standard deviation over the cell, as its paths interfere
+  double phases_db = 0.0;   ///< the same where the phases of its paths are not known
 };
 
 /// The mean over a cell of what the matched filter answers, max over t of |Σ_pairs

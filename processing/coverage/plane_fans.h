@@ -18,7 +18,7 @@ struct WantedLevel {
 /// when it is asked for and not kept: one fan of so many rays for all levels (mean_paths()).
 class PlaneFans {
  public:
-  static constexpr int rays = 192;
+  static constexpr int rays = 128;
 
   /// \param paths  must outlive this   \param spacing  of the cells [m]   \param reach  [m]
   PlaneFans(const PropagationPaths& paths, const Vec3& place, std::vector<WantedLevel> levels,

@@ -13,6 +13,7 @@
 #include "io/scenario/scenario_reader.h"
 #include "processing/coverage/coverage_of_scenario.h"
 #include "processing/detection_threshold.h"
+#include "raytrace/paths/boundary_paths.h"
 #include "sonar/noise/noise_spectrum.h"
 #include "sonar/signal/pulse_coherence.h"
 
@@ -178,9 +179,9 @@ struct Tolerance {
 };
 
 /// The picture of a scenario against pings at targets in some of its cells.
-void hold_against_pings(const Scenario& whole, double depth, double reach, const Tolerance& echo,
-                        const Tolerance& reverberation) {
-  constexpr int ranges = 200, bearings = 36, points = 7, j = 3;
+void hold_against_pings(const Scenario& whole, double depth, double reach, int points,
+                        const Tolerance& echo, const Tolerance& reverberation) {
+  constexpr int ranges = 200, bearings = 36, j = 3;
   constexpr std::array cells = {30, 50, 75, 101, 130, 160};
   const Coverage found = coverage(PingSimulator(whole), small(depth, reach, ranges, bearings));
   const double step = reach / ranges, bearing = found.bearings[std::size_t(j)];
@@ -212,14 +213,15 @@ void hold_against_pings(const Scenario& whole, double depth, double reach, const
   EXPECT_LT(std::abs(reverberations), reverberation.mean);
 }
 
-// Single phones, so that a level is that of all bearings, as a ping tells it. Seven points of a
-// cell are a mean to about a decibel where paths interfere; the picture asks the filter at fewer
-// delays. A ping's expected level is that of rings some metres apart: in shallow water some 30 of
-// them fall into a pulse, each with a pattern of paths of its own, which is ±0.8 dB.
+// Single phones, so that a level is that of all bearings, as a ping tells it. Where paths interfere
+// n points of a cell are a mean to 4.3/√n dB, and the filter, which the picture asks at some
+// delays, answers louder somewhere between them: by less than a decibel in the mean. A ping's
+// expected reverberation is that of rings some metres apart: in shallow water some 30 of them fall
+// into a pulse, each with a pattern of paths of its own, which is ±0.8 dB.
 TEST(Coverage, OfADeepOceanIsThatOfPings) {
   hold_against_pings(read_scenario(std::string(ASDIC_SCENARIOS) + "/deep_ocean.toml",
                                    std::vector<std::string>{"array.phones=1"}),
-                     150.0, 30e3, {1.2, 0.6}, {0.3, 0.15});
+                     150.0, 30e3, 25, {2.5, 0.8}, {0.3, 0.15});
 }
 
 constexpr const char* shallow = R"(
@@ -264,7 +266,35 @@ sample_rate = 16000.0
 )";
 
 TEST(Coverage, OfShallowWaterIsThatOfPings) {
-  hold_against_pings(scenario(shallow), 40.0, 4e3, {2.5, 0.8}, {2.0, 0.6});
+  hold_against_pings(scenario(shallow), 40.0, 4e3, 5, {3.0, 1.2}, {2.0, 0.6});
+}
+
+// Up the flank of a seamount, over its facets: energy over some kilometres by one fan of few rays
+// is that of fans that are split until they tell each path.
+TEST(Coverage, FewRaysOfAPlaneHoldTheEnergyOfMany) {
+  const PingSimulator simulator(
+      read_scenario(std::string(ASDIC_SCENARIOS) + "/seamount_ping.toml"));
+  const PropagationPaths& paths = simulator.paths();
+  const Vec3 place = simulator.geometry(1).source().position;
+  const auto solver = paths.solver(paths.plane(place, radians(20.0)));
+  const PathLimits limits{.max_surface_bounces = 2, .max_bottom_bounces = 2};
+  constexpr double spacing = 100.0, reach = 24e3;
+  const std::array<GroundLevel, 2> levels = {GroundLevel(150.0), GroundLevel(BoundaryKind::bottom)};
+  const std::vector<BoundaryPaths> few =
+      mean_paths(*solver, place.z(), levels, spacing, reach, 3500.0, limits, 128);
+  for (std::size_t level = 0; level < levels.size(); ++level) {
+    const BoundaryPaths many =
+        boundary_paths(*solver, place.z(), levels[level], spacing, reach, 3500.0, limits);
+    for (std::size_t first = 20; first + 40 <= many.cells(); first += 40) {
+      const auto energy = [&](const BoundaryPaths& all) {
+        double sum = 0.0;
+        for (std::size_t cell = first; cell < first + 40; ++cell)
+          for (const BoundaryPath& path : all.paths(cell)) sum += std::norm(path.amplitude);
+        return db_from_power(sum);
+      };
+      EXPECT_NEAR(energy(few[level]), energy(many), 0.5) << level << ' ' << first;
+    }
+  }
 }
 
 TEST(Coverage, SaysWhereADepthIsNoWaterAndWhereNoRayComes) {
