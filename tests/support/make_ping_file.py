@@ -20,7 +20,8 @@ __all__ = ["Settings", "add_echo", "travel_direction", "write"]
 TABLES = {
     "arrivals": ("arrival",
         "ping leg target channel path bearing_deg range launch_elevation_deg "
-        "arrival_elevation_deg delay amplitude_real amplitude_imag spreading_db "
+        "arrival_elevation_deg launch_deflection_deg arrival_deflection_deg delay "
+        "amplitude_real amplitude_imag spreading_db "
         "absorption_db scattered path_length surface_bounces bottom_bounces upper_turns "
         "lower_turns caustics first_bounce bounce_count"),
     "bounces": ("bounce",

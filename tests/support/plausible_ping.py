@@ -217,7 +217,7 @@ def simulate(s: Settings):
                     out["arrivals"].append((ping + 1, leg, index, -1, k, bearing + 180 * leg,
                                             distance,
                                             launch[k] if leg == 0 else -arrive[k],
-                                            arrive[k] if leg == 0 else -launch[k], time[k],
+                                            arrive[k] if leg == 0 else -launch[k], 0.0, 0.0, time[k],
                                             10 ** (-loss[k] / 20) * (-1) ** bounces[k], 0.0,
                                             loss[k], 0.0, 0.0,
                                             time[k] * 1500, bounces[k], 0, 0, 0, 0, 0, 0))
