@@ -108,8 +108,7 @@ TEST(ThreeDimensions, EchoesArriveFromWhereTheirRaysDo) {
   EXPECT_GT(turned, radians(2.0));  // from the straight line
 }
 
-// The transmitter's pattern is asked where a ray leaves: a table of bearings, 10 dB down on the
-// left of the straight line and flat on the right.
+// The transmitter's pattern is asked where a ray leaves, which is not along the straight line.
 TEST(ThreeDimensions, PatternsAreThoseOfTheWayARayLeaves) {
   const Scenario s = shore();
   const PingSimulator simulator(s);
@@ -152,13 +151,13 @@ TEST(ThreeDimensions, DelaysOfMovingTargetsAreThoseOfAFixedPoint) {
     return found;
   };
   const std::size_t step = support::deep() ? 1 : 4;  // a search a moment and echo
-  for (std::size_t i = 1; i < record.echoes.size(); i += step) {
-    const EchoPath& echo = record.echoes[i];
+  for (std::size_t n = 1; n < record.echoes.size(); n += step) {
+    const EchoPath& echo = record.echoes[n];
     const Arrival& out = record.legs[0].arrivals[std::size_t(echo.outgoing)];
     const Arrival& home = record.legs[1].arrivals[std::size_t(echo.returning)];
     const Vec3 source = s.platforms[0].track.at(0.0).position;
     double struck = out.delay, received = struck + home.delay;
-    for (int round = 0; round < 4; ++round)
+    for (int round = 0; round < 3; ++round)
       struck = delay(source, s.targets[0].track.at(struck).position, out);
     const Vec3 at = s.targets[0].track.at(struck).position;
     for (int round = 0; round < 3; ++round)
