@@ -90,8 +90,7 @@ std::vector<Topic> all_topics() {
       {"ocean",
        "the water and the sea floor of a real place",
        {"asdic ocean writes the [environment] of a place, a track or an area: out of files that "
-        "you "
-        "name (GEBCO, World Ocean Atlas, HYCOM, CMEMS, ERA5, Argo, CTD casts), or of Debian's "
+        "you name (GEBCO, World Ocean Atlas, HYCOM, CMEMS, ERA5, Argo, CTD casts), or of Debian's "
         "package ferret-datasets. A scenario takes it by include = \"ocean.toml\".",
         "  asdic ocean --latitude 30.5 --longitude -60.5 --month 3 -o ocean.toml",
         read_on({"guide/real-ocean.md"})}},

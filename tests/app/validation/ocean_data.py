@@ -665,6 +665,35 @@ class Area(Folder):
             numbers = {name: number for number, name in classes.items()}
             np.testing.assert_array_equal(f["sediment"][:] == numbers["sandy mud"], depth <= 2500.0)
             self.assertEqual(f.getncattr("filetype"), "asdic ocean area")
+        (self.folder / "ping.toml").write_text("""include = "place.toml"
+[platform]
+position = [-8000.0, 0.0, 150.0]
+[transmitter]
+source_level_db = 215.0
+taper = "omnidirectional"
+[pulse]
+kind = "cw"
+frequency = 1000.0
+duration = 0.1
+[array]
+kind = "horizontal"
+phones = 1
+spacing = 0.7
+[[target]]
+position = [-8000.0, 3000.0, 200.0]
+strength_db = 12.0
+[reverberation]
+enabled = false
+[pings]
+recording_duration = 6.0
+sample_rate = 4000.0
+""")
+        self.assertIn("place.nc: elevation, bicubic", self.asdic("validate ping.toml"))
+        self.asdic("ping ping.toml -o ping.h5")
+        with h5py.File(self.folder / "ping.h5") as f:
+            self.assertIn("west.nc, elevation", " ".join(map(str, f.attrs["ocean_sources"])))
+            self.assertAlmostEqual(distance(f["platform_latitude"][0], f["platform_longitude"][0], *SUMMIT), 8000.0, delta=0.01)
+            self.assertGreater(f["summary/paths"][0, 0], 0)
         # The speeds are those of the profile, level by level.
         one = self.ocean("--bathymetry west.nc --temperature hycom.nc --month 1 --data none")[0]["sound_speed"]
         self.assertEqual(one["kind"], "temperature-salinity")
