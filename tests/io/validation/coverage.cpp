@@ -276,7 +276,7 @@ TEST(Coverage, FewRaysOfAPlaneHoldTheEnergyOfMany) {
       read_scenario(std::string(ASDIC_SCENARIOS) + "/seamount_ping.toml"));
   const PropagationPaths& paths = simulator.paths();
   const Vec3 place = simulator.geometry(1).source().position;
-  const auto solver = paths.solver(paths.plane(place, radians(20.0)));
+  const auto solver = paths.solver(paths.plane(place, radians(20.0), 24e3));
   const PathLimits limits{.max_surface_bounces = 2, .max_bottom_bounces = 2};
   constexpr double spacing = 100.0, reach = 24e3;
   const std::array<GroundLevel, 2> levels = {GroundLevel(150.0), GroundLevel(BoundaryKind::bottom)};
