@@ -231,10 +231,18 @@ def hatch_unsure(axes, area: Area, layer: int) -> list:
                   label="edge of a shadow or caustic: uncertain")]
 
 
+def smoothed(values, half: int = 4):
+    """Means over some cells of range and three of bearing: a line through single cells is no line."""
+    padded = np.pad(values, ((0, 0), (half, half)), mode="edge")
+    sums = np.cumsum(np.pad(padded, ((0, 0), (1, 0))), axis=1)
+    along = (sums[:, 2 * half + 1:] - sums[:, : -2 * half - 1]) / (2 * half + 1)
+    return (np.roll(along, 1, axis=0) + along + np.roll(along, -1, axis=0)) / 3.0
+
+
 def half_detected(axes, area: Area, layer: int) -> list:
     """The line of a signal excess of 0: detected half of the time. → handles"""
     excess = area.values["signal_excess_db"][layer]
-    known = np.where(np.isnan(excess), -99.0, np.clip(excess, -99.0, 99.0))
+    known = smoothed(np.where(np.isnan(excess), -40.0, np.clip(excess, -40.0, 40.0)))
     if known.min() > 0.0 or known.max() < 0.0:
         return []
     axes.contour(*middles(area), closed(known), levels=[0.0], colors=[style.ORANGE], linewidths=1.3,

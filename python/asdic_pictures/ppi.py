@@ -14,7 +14,18 @@ def nothing_to_show(data, ping):
         return reason
     if signal.scan(data.phones(ping)).kind == "vertical":
         return "the array tells no bearing"
+    last = data.start + data.valid_samples[ping] / data.sample_rate
+    if last < first_range(data, ping) + 2.0 * data.pulse_duration:
+        return "the record ends with the pulse"
     return None
+
+
+def first_range(data, ping) -> float:
+    """When the pulse is out and has passed the array: of what is received before nothing tells where it
+    was scattered. [s]
+    """
+    apart = np.hypot(*(data.platform(ping) - data.phones(ping).mean(axis=0))[:2])
+    return float(apart) / data.sound_speed(float(data.phones(ping)[:, 2].mean())) + data.pulse_duration
 
 
 def ranges(times, bearing, apart, towards: float, speed: float):
@@ -45,8 +56,7 @@ def draw(data, ping, axes=None, limits=None):
     source = data.platform(ping)
     off = (source - centre)[:2]
     apart, towards = float(np.hypot(*off)), float(np.arctan2(off[0], off[1]))
-    # Of a pulse that is on its way nothing tells where it was scattered.
-    first = int(np.searchsorted(edges, max(edges[0], apart / speed + data.pulse_duration)))
+    first = int(np.searchsorted(edges, max(edges[0], first_range(data, ping))))
     edges, db = together(edges[first:], db[:, first:])
     corner = np.radians(np.linspace(0.0, 360.0, SECTORS + 1))
     middle = 0.5 * (corner[1:] + corner[:-1])

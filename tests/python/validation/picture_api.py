@@ -276,7 +276,8 @@ class Areas(Case):
         ping = asdic.Scenario.parse(SEA).ping()
         fig = pictures.ppi(ping)
         mesh = fig.axes[0].collections[0]
-        corners, power = mesh.get_coordinates(), np.ma.filled(mesh.get_array(), -np.inf)
+        corners = mesh.get_coordinates()
+        power = np.ma.filled(mesh.get_array(), -np.inf).reshape(corners.shape[0] - 1, -1)
         k = np.unravel_index(power.argmax(), power.shape)
         x, y = corners[k[0]:k[0] + 2, k[1]:k[1] + 2].reshape(-1, 2).mean(axis=0)
         way = np.hypot(2500.0, 200.0) / 1e3
