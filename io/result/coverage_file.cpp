@@ -103,12 +103,14 @@ void write_coverage(Hdf5File& file, const Coverage& found, const Scenario& scena
               "true bearing of a cell's middle from the array", "degree");
   write_scale(file, "range", "range", found.ranges,
               "horizontal distance of a cell's middle from the array", "m");
+  write_scale<std::int32_t>(file, "xyz", "xyz", {0, 1, 2}, "0 east, 1 north, 2 depth");
   for (const auto& [name, place, meaning] :
        {std::tuple{"source_position", found.source, "east, north, depth of the transmitter"},
         std::tuple{"array_position", found.receiver,
                    "east, north, depth of the array: the middle of the picture"}}) {
     file.write<double>(name, std::vector<double>{place.x(), place.y(), place.z()}, {3});
     describe(file, name, meaning, "m");
+    file.attach_scales(name, {"xyz"});
   }
   const Shape shape = {depths.size(), bearings.size(), found.ranges.size()};
   const std::vector<std::string> scales = {"depth", "bearing", "range"};

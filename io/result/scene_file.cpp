@@ -24,7 +24,13 @@ double end_of(const PingSchedule& pings) {
 /// Tables of points: names, and [things, instants, 3] where they are.
 class Tracks {
  public:
-  Tracks(Hdf5File& file, double end) : file_(file), end_(end) {}
+  Tracks(Hdf5File& file, double end) : file_(file), end_(end) {
+    std::vector<double> times;
+    for (int k = 0; k < instants; ++k) times.push_back(end * k / (instants - 1));
+    write_scale(file, "instant", "instant", times, "time since the start of the scenario", "s");
+    if (!file.has("xyz"))
+      write_scale<std::int32_t>(file, "xyz", "xyz", {0, 1, 2}, "0 east, 1 north, 2 depth");
+  }
 
   template <class PlaceAt>
   void write(const std::string& group, const std::vector<std::string>& names,
@@ -41,6 +47,10 @@ class Tracks {
     if (names.empty()) return;
     file_.write<double>(name, places, {names.size(), std::size_t{instants}, 3});
     describe(file_, name, "east, north, depth from the start to the last record's end", "m");
+    std::vector<std::int32_t> numbers(names.size());
+    std::iota(numbers.begin(), numbers.end(), 0);
+    write_scale(file_, group + "/thing", "thing", numbers, "number of the thing, from 0");
+    file_.attach_scales(name, {group + "/thing", "instant", "xyz"});
   }
 
  private:
