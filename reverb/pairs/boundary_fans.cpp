@@ -124,7 +124,8 @@ std::shared_ptr<const BoundaryFan> BoundaryFans::around(const Vec3& place, const
   key.add(settings.spacing)
       .add(settings.wide)
       .add(settings.max_range)
-      .add(layered ? 0 : settings.sectors);
+      .add(layered ? 0 : settings.sectors)
+      .add(settings.means);
   key.add(limits.max_surface_bounces).add(limits.max_bottom_bounces).add(limits.max_launch_angle);
   key.add(limits.max_vertices).add(limits.faintest);
   key.add(limits.max_delay).add(limits.home_slowness);
@@ -190,7 +191,7 @@ BoundaryFan BoundaryFans::trace(const Vec3& place, const GroundLevel& level,
   };
   const auto ground = [&](const EigenraySolver& solver) {
     const GroundGrid grid = grid_of(settings).fine_below(height(solver.environment()));
-    if (paths_.area() && !solver.layered() && grid.wide() > grid.spacing()) {
+    if (settings.means && !solver.layered()) {
       const std::array levels{level};
       return std::make_shared<const BoundaryPaths>(
           std::move(mean_paths(solver, place.z(), levels, grid.without_fine(), settings.max_range,

@@ -69,6 +69,7 @@ class BoundaryFans {
     double max_range = 1e5;  ///< [m]
     double frequency = 1000.0;  ///< [Hz]
     PathLimits limits;
+    bool means = false;  ///< over an area: few rays, right as means over cells (mean_paths())
   };
 
   /// Of cells as wide as that, none is wider than this share of its range.

@@ -214,7 +214,8 @@ void ReverberationFields::meet(ScatteringPart part, const ReverberationContext& 
                                 // in steps, so that a slow drift finds what is kept
                                 .max_range = reach + spacing_ + 500.0 * std::ceil(apart / 1000.0),
                                 .frequency = ends.frequency,
-                                .limits = {}};
+                                .limits = {},
+                                .means = scenario_.area != nullptr};
   ends.source_speed = paths_.speed_at(ends.source.position);
   ends.receiver_speed = paths_.speed_at(ends.receiver.position);
   move_aside(part, ends.source.position.z());

@@ -169,7 +169,8 @@ Sectors scattered(const Vec3& source, const std::shared_ptr<const Area>& area,
                                 .wide = wide,
                                 .max_range = far + 100.0,
                                 .frequency = 4000.0,
-                                .limits = direct});
+                                .limits = direct,
+                                .means = wide > 0.0});
   const BeamPattern pattern({.beam = LineBeam{.taper = Taper::omnidirectional}}, speed / 4000.0);
   SheetEnds ends{.source = {.position = source}, .receiver = {.position = source}};
   ends.source_speed = ends.receiver_speed = speed;
