@@ -13,6 +13,7 @@
 #include "io/climatology/water.h"
 #include "io/climatology/wind.h"
 #include "io/hdf5/scale.h"
+#include "raytrace/area/map_frame.h"
 
 namespace asdic::detail {
 namespace {
@@ -30,7 +31,7 @@ struct Box {
 };
 
 Box box_about(const OceanRequest& request, double side) {
-  const double half = degrees(0.5 * side / climatology::earth_radius);
+  const double half = degrees(0.5 * side / MapFrame::earth_radius);
   const double furthest = std::abs(request.latitude) + half;
   if (!(side > 0.0 && furthest < 89.0 && half < 45.0))
     throw InputError({.where = "area",

@@ -10,6 +10,7 @@
 #include "io/climatology/floor.h"
 #include "io/climatology/water.h"
 #include "io/climatology/wind.h"
+#include "raytrace/area/map_frame.h"
 
 namespace asdic::detail {
 
@@ -261,7 +262,7 @@ void read_sediments(const OceanSources& sources, const OceanRequest& request,
 
 OceanSection sample_section(const OceanSources& sources, const OceanRequest& request) {
   check_request(request);
-  if (!(request.range > 0.0 && request.range <= pi * climatology::earth_radius))
+  if (!(request.range > 0.0 && request.range <= pi * MapFrame::earth_radius))
     throw InputError({.where = "range",
                       .got = to_text(request.range) + " m",
                       .expected = "a range above 0 and at most half way round the Earth"});

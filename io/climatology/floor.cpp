@@ -7,40 +7,39 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "io/climatology/words.h"
+#include "raytrace/area/map_frame.h"
 
 namespace asdic::detail::climatology {
 
 Place Place::at(double distance, double bearing_deg) const {
-  const double phi = radians(latitude), theta = radians(bearing_deg);
-  const double delta = distance / earth_radius;
-  const double sine =
-      std::sin(phi) * std::cos(delta) + std::cos(phi) * std::sin(delta) * std::cos(theta);
-  const double turn = std::atan2(std::sin(theta) * std::sin(delta) * std::cos(phi),
-                                 std::cos(delta) - std::sin(phi) * sine);
-  return {degrees(std::asin(std::clamp(sine, -1.0, 1.0))), longitude + degrees(turn)};
+  const double theta = radians(bearing_deg);
+  const MapFrame::OnGrid there =
+      MapFrame::geographic({latitude, longitude})
+          .on_grid(distance * std::sin(theta), distance * std::cos(theta));
+  return {there.v, there.u};
 }
 
 Floor::Floor(const std::vector<DataFile>& files, const OceanTime& when)
     : tiles_(files, bathymetry_quantity(), when), notes_(tiles_.remarks()) {
-  const NetcdfGrid& grid = tiles_.first();
+  sign_ = depth_sign(tiles_.first(), notes_);
+}
+
+double depth_sign(const NetcdfGrid& grid, std::vector<std::string>& notes) {
   const std::string variable = lower(grid.variable()), standard = lower(grid.standard_name()),
                     about = lower(grid.long_name());
   const auto says = [&](const char* word) {
     return variable.find(word) != std::string::npos || standard.find(word) != std::string::npos;
   };
-  if (says("depth") || variable == "deptho") {
-    sign_ = 1.0;
-    return;
-  }
+  if (says("depth") || variable == "deptho") return 1.0;
   const bool height =
       says("elevation") || says("height") || says("altitude") || says("topo") ||
       variable == "rose" || variable == "z" || about.find("elevation") != std::string::npos ||
       about.find("height") != std::string::npos || about.find("relief") != std::string::npos;
-  if (!height && about.find("depth") != std::string::npos)
-    sign_ = 1.0;
-  else if (!height)
-    notes_.push_back(grid.path().filename().string() + ": " + grid.variable() +
-                     " does not say what it is: taken as a height, positive up");
+  if (!height && about.find("depth") != std::string::npos) return 1.0;
+  if (!height)
+    notes.push_back(grid.path().filename().string() + ": " + grid.variable() +
+                    " does not say what it is: taken as a height, positive up");
+  return -1.0;
 }
 
 double Floor::require(const Place& place_) const {

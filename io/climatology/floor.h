@@ -6,13 +6,16 @@
 
 namespace asdic::detail::climatology {
 
-/// A place on the sphere, and those along great circles from it: the direct problem,
-/// sin φ₂ = sin φ cos δ + cos φ sin δ cos θ.
+/// A place on the sphere, and those along great circles from it.
 struct Place {
   double latitude, longitude;  // [°]
 
   [[nodiscard]] Place at(double distance, double bearing_deg) const;
 };
+
+/// What makes depths of a grid's values: +1 of depths, −1 of heights, by names, standard_name and
+/// long_name. \param notes  grows where nothing tells
+[[nodiscard]] double depth_sign(const NetcdfGrid& grid, std::vector<std::string>& notes);
 
 /// Depth of the sea out of heights or depths, in tiles.
 class Floor {

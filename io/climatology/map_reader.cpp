@@ -7,48 +7,15 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "io/climatology/floor.h"
 #include "io/climatology/netcdf_grid.h"
 #include "io/climatology/words.h"
 
 namespace asdic::detail {
 
-const MapKind bathymetry_map{
-    "bathymetry",
-    {"elevation", "height_above_reference_ellipsoid", "surface_altitude", "altitude", "ROSE",
-     "topo", "z", "sea_floor_depth_below_geoid", "sea_floor_depth_below_sea_surface",
-     "sea_floor_depth", "deptho", "depth", "bathymetry"}};
-const MapKind sound_speed_map{"sound speed",
-                              {"speed_of_sound_in_sea_water", "sound_speed", "speed", "c"}};
-const MapKind seabed_map{"the kind of sea floor", {"sediment", "seabed", "class"}};
-const MapKind wind_map{"wind speed", {"wind_speed", "WSPD", "windspeed"}};
-
 namespace {
 
 constexpr float no_value = std::numeric_limits<float>::quiet_NaN();
-
-NetcdfGrid open_grid(const std::filesystem::path& path, const std::string& variable,
-                     const MapKind& kind) {
-  if (!std::filesystem::exists(path))
-    throw InputError({.where = path.string(),
-                      .got = "no such file",
-                      .expected = "a netCDF file of " + kind.what});
-  const std::vector<std::string> names =
-      variable.empty() ? kind.names : std::vector<std::string>{variable};
-  auto grid = NetcdfGrid::find(path, names);
-  if (!grid) {
-    std::string list;
-    for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-    throw InputError({.where = path.string(),
-                      .got = "no variable of " + kind.what,
-                      .expected = "one with the name or standard_name " + list});
-  }
-  if (grid->times() > 1)
-    throw InputError(
-        {.where = path.string() + ": " + grid->variable(),
-         .got = std::to_string(grid->times()) + " times",
-         .expected = "one time: asdic ocean --area takes a day or a month out of them"});
-  return std::move(*grid);
-}
 
 /// An axis of a file, made to rise; a geographic one that goes round is cut open somewhere else.
 struct RisingAxis {
@@ -84,8 +51,9 @@ void cut_open(RisingAxis& axis, double longitude) {
 /// Reads windows out of a file, with more around them for what is filled.
 class WindowReader {
  public:
-  WindowReader(NetcdfGrid grid, RisingAxis x, RisingAxis y, bool volume)
+  WindowReader(NetcdfGrid grid, climatology::UnitRule rule, RisingAxis x, RisingAxis y, bool volume)
       : grid_(std::make_shared<const NetcdfGrid>(std::move(grid))),
+        rule_(std::move(rule)),
         x_(std::move(x)),
         y_(std::move(y)),
         volume_(volume) {}
@@ -133,32 +101,38 @@ class WindowReader {
     for (std::size_t j = 0; j < rows; ++j)
       for (std::size_t i = begin; i < end; ++i)
         for (std::size_t k = 0; k < levels; ++k)
-          all[(j * columns + i) * levels + k] = static_cast<float>(block.at(i - begin, j, k));
+          all[(j * columns + i) * levels + k] =
+              static_cast<float>(rule_.scale * block.at(i - begin, j, k) + rule_.offset);
   }
 
   std::shared_ptr<const NetcdfGrid> grid_;
+  climatology::UnitRule rule_;
   RisingAxis x_, y_;
   bool volume_;
 };
 
-bool holds_heights(const NetcdfGrid& grid) {
-  const std::string name = climatology::lower(grid.variable()),
-                    standard = climatology::lower(grid.standard_name());
-  const bool depth =
-      name.find("depth") != std::string::npos || standard.find("depth") != std::string::npos;
-  return !depth;
-}
-
 }  // namespace
 
 OpenedMap open_map(const std::filesystem::path& path, const std::string& variable,
-                   const MapKind& kind, double longitude) {
-  NetcdfGrid grid = open_grid(path, variable, kind);
+                   const climatology::GriddedQuantity& quantity, double longitude,
+                   std::vector<std::string>& notes) {
+  NetcdfGrid grid = climatology::require_grid({path, variable}, quantity, true);
+  if (grid.times() > 1)
+    throw InputError(
+        {.where = path.string() + ": " + grid.variable(),
+         .got = std::to_string(grid.times()) + " times",
+         .expected = "one time: asdic ocean --area takes a day or a month out of them"});
+  if (&quantity == &climatology::sediment_quantity() && climatology::lower(grid.units()) == "phi")
+    throw InputError(
+        {.where = path.string() + ": " + grid.variable(),
+         .got = "grain sizes in phi",
+         .expected = "numbers of classes: asdic ocean --area makes them of grain sizes"});
+  climatology::UnitRule rule = climatology::rule_of(grid, quantity, notes);
   OpenedMap opened{.depths = grid.depths(),
                    .geographic = grid.geographic(),
-                   .name = path.filename().string() + ": " + grid.variable(),
-                   .heights = holds_heights(grid),
-                   .units = grid.units()};
+                   .name = path.filename().string() + ": " + grid.variable()};
+  if (&quantity == &climatology::bathymetry_quantity())
+    opened.depth_sign = climatology::depth_sign(grid, notes);
   RisingAxis x = rising(grid.eastings()), y = rising(grid.northings());
   for (const auto* axis : {&x, &y})
     if (axis->places.size() < 2)
@@ -172,7 +146,7 @@ OpenedMap open_map(const std::filesystem::path& path, const std::string& variabl
   const bool volume = !grid.depths().empty();
   opened.grid = std::make_shared<const MapGrid>(
       std::move(east), std::move(north), levels,
-      WindowReader(std::move(grid), std::move(x), std::move(y), volume));
+      WindowReader(std::move(grid), std::move(rule), std::move(x), std::move(y), volume));
   return opened;
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "io/climatology/tiles.h"
 #include "raytrace/area/map_grid.h"
 
 namespace asdic::detail {
@@ -11,26 +13,20 @@ namespace asdic::detail {
 /// A variable of a netCDF file as a map, or as a volume of maps: opened, and read tile by tile as
 /// it is asked for.
 struct OpenedMap {
-  std::shared_ptr<const MapGrid> grid;  ///< axes in [° east], [° north], or [m]
+  std::shared_ptr<const MapGrid> grid;  ///< axes in [° east], [° north], or [m]; values in our unit
   std::vector<double> depths;           ///< of the levels [m]; empty: it is a map
   bool geographic = true;
-  std::string name;      ///< "place.nc: elevation", for messages
-  bool heights = false;  ///< values are heights, positive up, not depths
-  std::string units;
+  std::string name;         ///< "place.nc: elevation", for messages
+  double depth_sign = 1.0;  ///< of bathymetry: what makes depths of its values
 };
 
-/// What a map is of, and how it is called in files where nobody says so.
-struct MapKind {
-  std::string what;
-  std::vector<std::string> names;
-};
-extern const MapKind bathymetry_map, sound_speed_map, seabed_map, wind_map;
-
-/// \param variable  "": one of the kind's usual names   \param longitude  about which a grid that
-/// goes round the globe is cut open, half way round [°]
-/// \throws InputError for an unfit file or variable, or one of several times
+/// \param variable  "": one of the quantity's usual names
+/// \param longitude  about which a grid that goes round the globe is cut open, half way round [°]
+/// \param notes  grows by what had to be assumed
+/// \throws InputError for an unfit file, variable or unit, or one of several times
 [[nodiscard]] OpenedMap open_map(const std::filesystem::path& path, const std::string& variable,
-                                 const MapKind& kind, double longitude);
+                                 const climatology::GriddedQuantity& quantity, double longitude,
+                                 std::vector<std::string>& notes);
 
 /// Fills what is missing of volumes [rows × columns × levels]: with the nearest value of its own
 /// level; where a level has none, the column goes on below its last value as pressure alone makes

@@ -10,6 +10,7 @@
 #include "core/units.h"
 #include "io/climatology/ascii_grid.h"
 #include "io/climatology/words.h"
+#include "raytrace/area/map_frame.h"
 
 namespace asdic::detail::climatology {
 namespace {
@@ -118,7 +119,29 @@ std::optional<NetcdfGrid> find_grid(const DataFile& file, const GriddedQuantity&
   return NetcdfGrid::find(file.path, names_wanted(file, quantity));
 }
 
-NetcdfGrid require_grid(const DataFile& file, const GriddedQuantity& quantity) {
+double mean_step(const std::vector<double>& axis) {
+  if (axis.size() < 2) return 1.0;
+  return std::abs(axis.back() - axis.front()) / static_cast<double>(axis.size() - 1);
+}
+
+double weighted_mean(const std::vector<Tiles::Weighted>& all) {
+  double sum = 0.0, weights = 0.0;
+  for (const auto& [value, weight] : all) {
+    if (std::isnan(value)) continue;
+    sum += weight * value;
+    weights += weight;
+  }
+  return weights > 0.0 ? sum / weights : unknown;
+}
+
+/// The same meridian, within half a turn of another.
+double near_longitude(double longitude, double other) {
+  return longitude + 360.0 * std::round((other - longitude) / 360.0);
+}
+
+}  // namespace
+
+NetcdfGrid require_grid(const DataFile& file, const GriddedQuantity& quantity, bool projected) {
   if (!std::filesystem::exists(file.path))
     throw InputError({.where = file.path.string(),
                       .got = "no such file",
@@ -135,7 +158,7 @@ NetcdfGrid require_grid(const DataFile& file, const GriddedQuantity& quantity) {
                                       : "no variable " + in_quotes(file.variable),
          .expected = "one with the name or standard_name " + list + ", or FILE:VARIABLE"});
   }
-  if (!grid->geographic())
+  if (!grid->geographic() && !projected)
     throw InputError({.where = file.path.string() + ": " + grid->variable(),
                       .got = "a grid on projected x and y",
                       .expected = "one on longitude and latitude"});
@@ -161,28 +184,6 @@ UnitRule rule_of(const NetcdfGrid& grid, const GriddedQuantity& quantity,
                     .got = "units of " + in_quotes(grid.units()),
                     .expected = quantity.name + " in one of " + known});
 }
-
-double mean_step(const std::vector<double>& axis) {
-  if (axis.size() < 2) return 1.0;
-  return std::abs(axis.back() - axis.front()) / static_cast<double>(axis.size() - 1);
-}
-
-double weighted_mean(const std::vector<Tiles::Weighted>& all) {
-  double sum = 0.0, weights = 0.0;
-  for (const auto& [value, weight] : all) {
-    if (std::isnan(value)) continue;
-    sum += weight * value;
-    weights += weight;
-  }
-  return weights > 0.0 ? sum / weights : unknown;
-}
-
-/// The same meridian, within half a turn of another.
-double near_longitude(double longitude, double other) {
-  return longitude + 360.0 * std::round((other - longitude) / 360.0);
-}
-
-}  // namespace
 
 bool has_quantity(const std::vector<DataFile>& files, const GriddedQuantity& quantity) {
   if (files.empty() || !std::filesystem::exists(files[0].path)) return true;
@@ -415,7 +416,7 @@ std::optional<Tiles::Column> Tiles::column(double latitude, double longitude) co
 double Tiles::spacing(double latitude, double longitude, double bearing_deg) const {
   const Tile* tile = tile_at(latitude, longitude);
   if (tile == nullptr) tile = &tiles_.front();
-  const double degree = earth_radius * radians(1.0), theta = radians(bearing_deg);
+  const double degree = MapFrame::earth_radius * radians(1.0), theta = radians(bearing_deg);
   const double east = tile->step_east * degree * std::cos(radians(latitude)),
                north = tile->step_north * degree;
   const double meets = std::max(std::abs(std::sin(theta)) / std::max(east, 1.0),

@@ -9,8 +9,6 @@
 
 namespace asdic::detail::climatology {
 
-inline constexpr double earth_radius = 6.371e6;  // [m]
-
 /// What one quantity's files may say it in, and how that becomes our unit: value·scale + offset.
 struct UnitRule {
   std::vector<std::string> units;  ///< in lower case
@@ -33,6 +31,14 @@ struct GriddedQuantity {
 [[nodiscard]] const GriddedQuantity& eastward_wind_quantity();
 [[nodiscard]] const GriddedQuantity& northward_wind_quantity();
 [[nodiscard]] const GriddedQuantity& sediment_quantity();
+
+/// A variable of a gridded file. \param projected  whether x and y will do in place of longitude
+/// and latitude \throws InputError for a missing file or variable
+[[nodiscard]] NetcdfGrid require_grid(const DataFile& file, const GriddedQuantity& quantity,
+                                      bool projected = false);
+/// How its units become ours. \param remarks  grows where it has none \throws InputError for others
+[[nodiscard]] UnitRule rule_of(const NetcdfGrid& grid, const GriddedQuantity& quantity,
+                               std::vector<std::string>& remarks);
 
 /// Whether the first of these files is gridded and has such a variable; so also for a missing file,
 /// of which require() complains.

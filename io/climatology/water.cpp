@@ -7,17 +7,16 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "io/climatology/words.h"
+#include "raytrace/area/map_frame.h"
 #include "raytrace/ocean/seawater.h"
 #include "raytrace/ocean/sound_speed.h"
 
 namespace asdic::detail::climatology {
 namespace {
 
-/// Between places on the sphere [m]: haversines.
+/// Between places on the sphere [m].
 double distance_between(double lat1, double lon1, double lat2, double lon2) {
-  const double a = std::sin(radians(lat2 - lat1) / 2.0), b = std::sin(radians(lon2 - lon1) / 2.0);
-  const double h = a * a + std::cos(radians(lat1)) * std::cos(radians(lat2)) * b * b;
-  return 2.0 * earth_radius * std::asin(std::sqrt(std::clamp(h, 0.0, 1.0)));
+  return MapFrame::geographic({lat1, lon1}).on_map(lon2, lat2).norm();
 }
 
 /// Linear between levels; nothing beyond the last.

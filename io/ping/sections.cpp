@@ -274,8 +274,7 @@ void write_section(Hdf5File& file, const SoundSpeedSection& section) {
 void write_area(Hdf5File& file, const Scenario& scenario) {
   const Area& area = *scenario.area;
   const Vec2 middle = scenario.platforms[0].track.at(0.0).position.head<2>();
-  const double heard =
-      0.5 * 1500.0 * (scenario.pings.recording_start + scenario.pings.recording_duration);
+  const double heard = 0.5 * 1500.0 * end_of_record(scenario);
   const double step = std::max(area.spacing(middle), heard / 100.0);
   const auto lines = static_cast<int>(std::ceil(heard / step));
   std::vector<double> east, north, depth;

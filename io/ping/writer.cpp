@@ -179,11 +179,13 @@ void PingFileWriter::Impl::create_places(const PlaceNames& names, const std::str
 void PingFileWriter::Impl::append_places(const PlaceNames& names,
                                          const std::vector<Vec3>& positions) {
   if (!scenario.origin) return;
+  const MapFrame frame = MapFrame::geographic(
+      {degrees(scenario.origin->latitude), degrees(scenario.origin->longitude)});
   std::vector<double> latitude, longitude;
   for (const Vec3& position : positions) {
-    const auto place = on_the_globe(*scenario.origin, position.x(), position.y());
-    latitude.push_back(place.latitude);
-    longitude.push_back(place.longitude);
+    const MapFrame::OnGrid place = frame.on_grid(position.x(), position.y());
+    latitude.push_back(place.v);
+    longitude.push_back(place.u);
   }
   file.append<double>(names.latitude, latitude);
   file.append<double>(names.longitude, longitude);

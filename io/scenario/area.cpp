@@ -118,9 +118,10 @@ AreaReading::AreaReading(TomlTable table, const OceanReading& reading,
   if (form.seabed) settings_.seabed = form.seabed->map.map;
   if (form.wind) settings_.wind = form.wind->map;
 
-  const auto open = [&](const MapFile& map, const MapKind& kind, const char* key, bool volume) {
-    OpenedMap opened =
-        open_map(reading.folder / map.file, map.variable, kind, origin ? origin->longitude : 0.0);
+  const auto open = [&](const MapFile& map, const climatology::GriddedQuantity& quantity,
+                        const char* key, bool volume) {
+    OpenedMap opened = open_map(reading.folder / map.file, map.variable, quantity,
+                                origin ? origin->longitude : 0.0, reading_.notes);
     if (opened.geographic && !origin)
       throw table_.fault(key,
                          "[environment.origin] with latitude_deg and longitude_deg, where the "
@@ -135,21 +136,24 @@ AreaReading::AreaReading(TomlTable table, const OceanReading& reading,
     return opened.geographic ? MapFrame::geographic(*origin)
                              : MapFrame::projected(settings_.easting, settings_.northing);
   };
-  const OpenedMap floor = open(settings_.bathymetry, bathymetry_map, "bathymetry", false);
-  floor_.emplace(floor.grid, frame(floor), settings_.interpolation, floor.heights ? -1.0 : 1.0,
+  const OpenedMap floor =
+      open(settings_.bathymetry, climatology::bathymetry_quantity(), "bathymetry", false);
+  floor_.emplace(floor.grid, frame(floor), settings_.interpolation, floor.depth_sign,
                  MapOrigin{floor.name});
   if (!floor_->covers(0.0, 0.0))
     throw table_.fault("bathymetry", "a map that holds the scenario's [0, 0]", floor.name);
   if (settings_.sound_speed) {
-    const OpenedMap water = open(*settings_.sound_speed, sound_speed_map, "sound_speed", true);
+    const OpenedMap water =
+        open(*settings_.sound_speed, climatology::sound_speed_quantity(), "sound_speed", true);
     water_.emplace(water.grid, frame(water), water.depths, MapOrigin{water.name});
   }
   if (settings_.seabed) {
-    const OpenedMap seabed = open(*settings_.seabed, seabed_map, "seabed", false);
+    const OpenedMap seabed =
+        open(*settings_.seabed, climatology::sediment_quantity(), "seabed", false);
     seabed_.emplace(seabed.grid, frame(seabed), MapOrigin{seabed.name});
   }
   if (settings_.wind) {
-    const OpenedMap wind = open(*settings_.wind, wind_map, "wind", false);
+    const OpenedMap wind = open(*settings_.wind, climatology::wind_speed_quantity(), "wind", false);
     wind_.emplace(wind.grid, frame(wind), MapInterpolation::faceted, 1.0, MapOrigin{wind.name});
   }
 }

@@ -1,8 +1,5 @@
 #include "raytrace/ocean/ocean_origin.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace asdic::detail {
 
 void OceanSource::describe(Fields& field) {
@@ -31,19 +28,6 @@ std::vector<std::string> OceanOrigin::source_lines() const {
     if (!source.digest.empty()) lines.back() += " (" + source.digest + ")";
   }
   return lines;
-}
-
-LatitudeLongitude on_the_globe(const OceanOrigin& origin, double east, double north) {
-  constexpr double earth_radius = 6.371e6;
-  const double distance = std::hypot(east, north);
-  if (distance == 0.0) return {degrees(origin.latitude), degrees(origin.longitude)};
-  const double c = distance / earth_radius;
-  const double sine = std::cos(c) * std::sin(origin.latitude) +
-                      north / distance * std::sin(c) * std::cos(origin.latitude);
-  const double turn =
-      std::atan2(east * std::sin(c), distance * std::cos(origin.latitude) * std::cos(c) -
-                                         north * std::sin(origin.latitude) * std::sin(c));
-  return {degrees(std::asin(std::clamp(sine, -1.0, 1.0))), degrees(origin.longitude + turn)};
 }
 
 }  // namespace asdic::detail

@@ -32,15 +32,4 @@ struct OceanOrigin {
   [[nodiscard]] bool operator==(const OceanOrigin&) const = default;
 };
 
-/// A place on a sphere of 6371 km [°].
-struct LatitudeLongitude {
-  double latitude = 0.0, longitude = 0.0;
-};
-
-/// Of a place on the map [m] east and north of its [0, 0]: the azimuthal equidistant projection
-/// about it, so that distances and bearings from there are those of great circles. Longitudes are
-/// within half a turn of the origin's. Snyder, Map Projections – A Working Manual, USGS Prof. Paper
-/// 1395 (1987), eqs. (20-14), (20-15).
-[[nodiscard]] LatitudeLongitude on_the_globe(const OceanOrigin& origin, double east, double north);
-
 }  // namespace asdic::detail

@@ -199,6 +199,48 @@ variable = "sediment"
               testing::AllOf(HasSubstr("target"), HasSubstr("a place on the map")));
 }
 
+// Kilometres, knots and km/s become our units; others, and grain sizes, are refused by name.
+TEST_F(AreaFiles, UnitsAreThoseOfTheFile) {
+  const auto write = [&](const std::string& name, const std::string& units, double value) {
+    NetcdfWriter file(folder_ / "units.nc");
+    file.axis("lat", even(39.0, 0.25, 9), {{"units", "degrees_north"}});
+    file.axis("lon", even(-21.0, 0.25, 9), {{"units", "degrees_east"}});
+    file.variable(name, NC_FLOAT, {"lat", "lon"}, std::vector<double>(81, value),
+                  {{"units", units}});
+  };
+  const std::string units = std::string(place).replace(place.find("heights.nc"), 10, "units.nc");
+  write("elevation", "km", -2.5);
+  EXPECT_NEAR(read(units + layered + sonar).area->bottom_depth(0.0, 0.0), 2500.0, 1e-3);
+  write("elevation", "fathoms", -1000.0);
+  EXPECT_THAT(fault(units + layered + sonar),
+              testing::AllOf(HasSubstr("units.nc: elevation"), HasSubstr("fathoms")));
+  write("elevation", "", -2500.0);
+  EXPECT_THAT(read(units + layered + sonar).notes,
+              testing::Contains(HasSubstr("units.nc: elevation has no units")));
+  write("sediment", "phi", 3.0);
+  EXPECT_THAT(fault(place + layered + R"(
+[environment.area.seabed]
+file = "units.nc"
+[[environment.area.seabed.class]]
+number = 3
+kind = "rigid"
+)" + sonar),
+              testing::AllOf(HasSubstr("units.nc: sediment"), HasSubstr("grain sizes in phi")));
+}
+
+// A floor whose name says nothing, whose long_name does: depths, not heights.
+TEST_F(AreaFiles, DepthsAreKnownByTheirLongName) {
+  {
+    NetcdfWriter file(folder_ / "named.nc");
+    file.axis("lat", even(39.0, 0.25, 9), {{"units", "degrees_north"}});
+    file.axis("lon", even(-21.0, 0.25, 9), {{"units", "degrees_east"}});
+    file.variable("bath", NC_FLOAT, {"lat", "lon"}, std::vector<double>(81, 700.0),
+                  {{"units", "m"}, {"long_name", "depth of the sea floor"}});
+  }
+  const std::string named = std::string(place).replace(place.find("heights.nc"), 10, "named.nc");
+  EXPECT_NEAR(read(named + layered + sonar).area->bottom_depth(0.0, 0.0), 700.0, 1e-3);
+}
+
 // 10⁸ places: opened in kilobytes.
 TEST_F(AreaFiles, ALargeGridIsOpenedAndNotLoaded) {
   {
@@ -209,7 +251,9 @@ TEST_F(AreaFiles, ALargeGridIsOpenedAndNotLoaded) {
     file.axis("lon", even(-45.0, 0.005, n), {{"units", "degrees_east"}});
     file.variable("elevation", NC_SHORT, {"lat", "lon"}, {});
   }
-  const OpenedMap map = open_map(folder_ / "large.nc", "", bathymetry_map, -20.0);
+  std::vector<std::string> notes;
+  const OpenedMap map =
+      open_map(folder_ / "large.nc", "", climatology::bathymetry_quantity(), -20.0, notes);
   EXPECT_EQ(map.grid->x().size(), 10'000U);
   EXPECT_EQ(map.grid->bytes(), 0U);
   EXPECT_EQ(*map.grid->at(5000, 5000), 0.0F);
