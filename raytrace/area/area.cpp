@@ -15,6 +15,17 @@ constexpr double straight_error = 0.04;  // of speeds between the levels of sect
 constexpr int land = -1;                 // as a kind of sea floor
 constexpr int unmapped = -2;             // the one kind of a sea floor without a map of kinds
 
+/// How far a map goes on from a place along a bearing, to `most` m [m].
+template <class Map>
+double reach_on(const Map& map, const Vec2& place, double bearing, double most) {
+  const double step = map.spacing(place.x(), place.y());
+  double r = 0.0;
+  while (r < most && map.covers(place.x() + (r + step) * std::sin(bearing),
+                                place.y() + (r + step) * std::cos(bearing)))
+    r += step;
+  return std::min(r, most);
+}
+
 /// Reflects nothing.
 const BoundaryMaterial& beach() {
   static const BoundaryMaterial material =
@@ -31,12 +42,7 @@ struct FloorSample {
 }  // namespace
 
 Area::Area(Maps maps, Environment rest, AreaSettings settings)
-    : maps_(std::move(maps)), settings_(std::move(settings)), everywhere_(std::move(rest)) {
-  if (!maps_.water) return;
-  levels_ = maps_.water->straight_levels(straight_error);
-  if (levels_.front() > everywhere_.surface.depth)
-    levels_.insert(levels_.begin(), everywhere_.surface.depth);
-}
+    : maps_(std::move(maps)), settings_(std::move(settings)), everywhere_(std::move(rest)) {}
 
 SoundSpeed3D Area::speed_at(double x, double y, double z) const {
   if (maps_.water) return maps_.water->at(x, y, z);
@@ -45,7 +51,7 @@ SoundSpeed3D Area::speed_at(double x, double y, double z) const {
 }
 
 const BoundaryMaterial& Area::material_at(double x, double y) const {
-  if (bottom_depth(x, y) <= surface_depth() + film) return beach();
+  if (is_land(x, y)) return beach();
   if (!maps_.seabed) return everywhere_.bottom.material;
   const int kind = maps_.seabed->at(x, y);
   const auto known = maps_.materials.find(kind);
@@ -245,14 +251,18 @@ void Area::put_water(const Vec2& place, double bearing, double reach, Environmen
   const WaterMap& water = *maps_.water;
   const double step = water.spacing(place.x(), place.y());
   const auto steps = static_cast<std::size_t>(std::ceil(reach / step)) + 1;
-  const std::size_t n = levels_.size();
+  // Over land, where the map may have no water, the columns before go on.
+  std::vector<Vec2> places;
+  for (std::size_t i = 0; i <= steps; ++i) {
+    const Vec2 there = place + double(i) * step * Vec2(std::sin(bearing), std::cos(bearing));
+    places.push_back(i > 0 && is_land(there.x(), there.y()) ? places.back() : there);
+  }
+  const std::vector<double> levels =
+      water.straight_levels(places, everywhere_.surface.depth, straight_error);
+  const std::size_t n = levels.size();
   std::vector<double> ranges, speeds;
   std::vector<std::vector<double>> columns;
-  for (std::size_t i = 0; i <= steps; ++i) {
-    const double r = double(i) * step;
-    columns.push_back(water.column(place.x() + r * std::sin(bearing),
-                                   place.y() + r * std::cos(bearing), levels_));
-  }
+  for (const Vec2& there : places) columns.push_back(water.column(there.x(), there.y(), levels));
   // Of columns that lie on straight lines between others the outer ones.
   constexpr double error = 0.25 * straight_error;
   const auto straight = [&](std::size_t first, std::size_t last) {
@@ -275,9 +285,9 @@ void Area::put_water(const Vec2& place, double bearing, double reach, Environmen
     add(last);
     first = last;
   }
-  plane.water = SoundSpeedProfile::table(levels_, columns.front(), Interpolation::c_linear);
+  plane.water = SoundSpeedProfile::table(levels, columns.front(), Interpolation::c_linear);
   const bool alike = ranges.size() == 2 && columns.front() == columns.back();
-  if (!alike) plane.section = SoundSpeedSection(ranges, levels_, speeds);
+  if (!alike) plane.section = SoundSpeedSection(ranges, levels, speeds);
 }
 
 Environment Area::section(const Vec2& place, double bearing, double reach) const {
@@ -289,12 +299,24 @@ Environment Area::section(const Vec2& place, double bearing, double reach) const
 }
 
 double Area::reach_on_map(const Vec2& place, double bearing, double most) const {
-  const double step = spacing(place);
-  double r = 0.0;
-  while (r < most && maps_.floor.covers(place.x() + (r + step) * std::sin(bearing),
-                                        place.y() + (r + step) * std::cos(bearing)))
-    r += step;
-  return std::min(r, most);
+  const double reach = reach_on(maps_.floor, place, bearing, most);
+  return maps_.water ? reach_on(*maps_.water, place, bearing, reach) : reach;
+}
+
+Area::Edge Area::nearest_edge(const Vec2& place, double most) const {
+  Edge found{.distance = most};
+  for (int degree = 0; degree < 360; degree += 5) {
+    const double bearing = radians(degree);
+    const auto look = [&](const auto& map) {
+      const double reach = reach_on(map, place, bearing, found.distance);
+      if (reach < found.distance) found = {reach, bearing, map.name()};
+    };
+    look(maps_.floor);
+    if (maps_.water) look(*maps_.water);
+    if (maps_.seabed) look(*maps_.seabed);
+    if (maps_.wind) look(*maps_.wind);
+  }
+  return found;
 }
 
 Area::Winds Area::winds(const Vec2& place, double distance) const {
@@ -332,8 +354,9 @@ Area::Bounds Area::bounds(const Vec2& place, double distance) const {
   for (int i = -m; i <= m; ++i)
     for (int j = -m; j <= m; ++j) {
       const Vec2 there = place + wide * Vec2(i, j);
-      if (!maps_.water->covers(there.x(), there.y())) continue;
-      for (const double c : maps_.water->column(there.x(), there.y(), levels_))
+      if (!maps_.water->covers(there.x(), there.y()) || is_land(there.x(), there.y())) continue;
+      for (const double c :
+           maps_.water->column(there.x(), there.y(), maps_.water->depths().places()))
         found.fastest = std::max(found.fastest, c);
     }
   return found;

@@ -36,6 +36,10 @@ class Area {
 
   /// Depth of the sea floor [m], at most 0 on land.
   [[nodiscard]] double bottom_depth(double x, double y) const { return maps_.floor.at(x, y).value; }
+  /// Whether there is no more than the film of water that land has.
+  [[nodiscard]] bool is_land(double x, double y) const {
+    return bottom_depth(x, y) <= surface_depth() + film;
+  }
   [[nodiscard]] double surface_depth() const noexcept { return everywhere_.surface.depth; }
   [[nodiscard]] SoundSpeed3D speed_at(double x, double y, double z) const;
   [[nodiscard]] const BoundaryMaterial& material_at(double x, double y) const;
@@ -47,8 +51,14 @@ class Area {
   /// coast ends there.
   [[nodiscard]] Environment section(const Vec2& place, double bearing, double reach) const;
 
-  /// How far the map goes on from a place along a bearing, to `most` m [m].
+  /// How far floor and water go on from a place along a bearing, to `most` m [m].
   [[nodiscard]] double reach_on_map(const Vec2& place, double bearing, double most) const;
+  /// The nearest end of any of the maps, within `most` m of a place; `most` itself: there is none.
+  struct Edge {
+    double distance = 0.0, bearing = 0.0;  ///< [m], [rad]
+    std::string map = {};                  ///< its name
+  };
+  [[nodiscard]] Edge nearest_edge(const Vec2& place, double most) const;
   /// Of the floor's grid at a place [m].
   [[nodiscard]] double spacing(const Vec2& place) const noexcept {
     return maps_.floor.spacing(place.x(), place.y());
@@ -72,7 +82,6 @@ class Area {
   Maps maps_;
   AreaSettings settings_;
   Environment everywhere_;
-  std::vector<double> levels_;  // of sections
 };
 
 }  // namespace asdic::detail

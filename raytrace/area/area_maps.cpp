@@ -232,20 +232,19 @@ std::vector<double> WaterMap::column(double x, double y, std::span<const double>
   return speed;
 }
 
-std::vector<double> WaterMap::straight_levels(double error) const {
-  // Every place that may become a level, and the speeds there of columns about the map's [0, 0].
-  constexpr int around = 4, parts = 8;
+std::vector<double> WaterMap::straight_levels(std::span<const Vec2> places, double top,
+                                              double error) const {
+  // Every depth that may become a level, and the speeds there.
+  constexpr int parts = 8;
   const auto levels = depths_.places();
   std::vector<double> candidates;
+  if (top < levels.front()) candidates.push_back(top);
   for (std::size_t k = 0; k + 1 < levels.size(); ++k)
     for (int part = 0; part < parts; ++part)
       candidates.push_back(std::lerp(levels[k], levels[k + 1], double(part) / parts));
   candidates.push_back(levels.back());
-  const double step = spacing(0.0, 0.0);
   std::vector<std::vector<double>> columns;
-  for (int i = -around; i <= around; ++i)
-    for (int j = -around; j <= around; ++j)
-      if (covers(i * step, j * step)) columns.push_back(column(i * step, j * step, candidates));
+  for (const Vec2& place : places) columns.push_back(column(place.x(), place.y(), candidates));
   // As far as a straight line is near enough to all that it leaves out.
   const auto straight = [&](std::size_t a, std::size_t b) {
     const double width = candidates[b] - candidates[a];
@@ -274,6 +273,10 @@ int ClassMap::at(double x, double y) const {
   const double value = double(*grid_->at(grid_->x().nearest(place.u), grid_->y().nearest(place.v)));
   if (std::isnan(value)) throw_hole(origin_.name, frame_, place.u, place.v, "a kind of sea floor");
   return static_cast<int>(std::lround(value));
+}
+
+bool ClassMap::covers(double x, double y) const noexcept {
+  return asdic::detail::covers(*grid_, frame_, x, y);
 }
 
 double ClassMap::spacing(double x, double y) const noexcept {

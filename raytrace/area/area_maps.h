@@ -88,8 +88,10 @@ class WaterMap {
   [[nodiscard]] const MapAxis& depths() const noexcept { return depths_; }
   [[nodiscard]] const std::string& name() const noexcept { return origin_.name; }
   /// As few depths as it takes for straight lines between them to leave the cubics of the columns
-  /// about the map's [0, 0] by at most `error` [m/s].
-  [[nodiscard]] std::vector<double> straight_levels(double error) const;
+  /// at some places by at most `error` [m/s]. \param top  the first of them, if the levels begin
+  /// below
+  [[nodiscard]] std::vector<double> straight_levels(std::span<const Vec2> places, double top,
+                                                    double error) const;
 
  private:
   std::shared_ptr<const MapGrid> grid_;
@@ -106,6 +108,7 @@ class ClassMap {
 
   /// \throws InputError where there is none
   [[nodiscard]] int at(double x, double y) const;
+  [[nodiscard]] bool covers(double x, double y) const noexcept;
   [[nodiscard]] double spacing(double x, double y) const noexcept;
   [[nodiscard]] const std::string& name() const noexcept { return origin_.name; }
 

@@ -7,8 +7,7 @@
 namespace asdic::detail {
 namespace {
 
-constexpr double measured = 50e3;  // [m] about the map's [0, 0]
-constexpr double more = 1.5;       // than what was measured on lines
+constexpr double more = 1.5;  // than what was measured on lines
 
 }  // namespace
 
@@ -28,7 +27,7 @@ AreaVolume::AreaVolume(std::shared_ptr<const Area> area)
   if (!area_->water()) return;
   const WaterMap& water = *area_->water();
   look(std::max(water.spacing(0.0, 0.0), measured / 10.0), 10.0, [&](double x, double y) {
-    if (!water.covers(x, y)) return;
+    if (!water.covers(x, y) || area_->is_land(x, y)) return;
     for (const double z : water.depths().places()) {
       const SoundSpeed3D c = water.at(x, y, z);
       bending_ = std::max(bending_, std::hypot(c.c_x, c.c_y) / (c.c * c.c));
@@ -54,7 +53,7 @@ VolumeSpeed AreaVolume::speed(const Vec3& place, std::size_t cell) const {
 
 VolumeFloor AreaVolume::floor(double x, double y) const {
   const MapValue depth = area_->floor().at(x, y);
-  const double land = area_->surface_depth() + Area::film;
+  const double land = area_->surface_depth() + Area::film;  // as Area::is_land()
   if (depth.value <= land) return {.depth = land};
   VolumeFloor floor{.depth = depth.value, .gradient = {depth.x, depth.y}};
   if (area_->floor().interpolation() == MapInterpolation::faceted) {

@@ -10,8 +10,10 @@ namespace asdic::detail {
 /// water over a floor that reflects nothing, as in the planes of Area::section().
 class AreaVolume : public VolumeOcean {
  public:
+  static constexpr double measured = 50e3;  ///< about the map's [0, 0] [m]
+
   /// Bounds of slopes and of the water's gradient are those on the lines of the grid about the
-  /// map's [0, 0], to 50 km at most, and a half more.
+  /// map's [0, 0], to `measured` at most, and a half more.
   explicit AreaVolume(std::shared_ptr<const Area> area);
 
   [[nodiscard]] WaterCell water_cell(const Vec3& place, const Vec3& towards) const override;

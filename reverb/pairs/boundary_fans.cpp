@@ -41,7 +41,9 @@ std::vector<CellFacet> facets_over_area(const Area& area, const Plane& plane,
     const double area_ratio = std::sqrt(1.0 + floor.x * floor.x + floor.y * floor.y);
     facets.push_back({.grazing = std::hypot(1.0, in_plane) / area_ratio,
                       .area = area_ratio,
-                      .kind = area.seabed() ? area.seabed()->at(there.x(), there.y()) : 0});
+                      .kind = area.seabed() && !area.is_land(there.x(), there.y())
+                                  ? area.seabed()->at(there.x(), there.y())
+                                  : 0});
   }
   return facets;
 }
