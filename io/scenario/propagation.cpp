@@ -1,5 +1,9 @@
 #include "io/scenario/propagation.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "core/text.h"
 #include "io/scenario/area.h"
 #include "io/scenario/document.h"
 #include "io/scenario/ocean.h"
@@ -18,6 +22,19 @@ TomlTable run_of(TomlTable& root) {
                      "a [run] with [run.receivers]: what the propagation model is to do "
                      "(docs/formats/scenario.md)");
   return root.table("run");
+}
+
+/// What lies beyond the map of an area that a run goes to.
+void tell_beyond_the_map(const PropagationCase& run, std::vector<std::string>& notes) {
+  if (!run.on_area) return;
+  double furthest = run.box_range;
+  for (const double range : run.receivers.ranges) furthest = std::max(furthest, range);
+  const auto& [area, place, bearing] = *run.on_area;
+  const double reach = area->reach_on_map(place, bearing + run.off_transect, furthest);
+  if (reach < furthest)
+    notes.push_back("environment.area: sound is followed to " + to_text(furthest / 1000.0) +
+                    " km, and the maps end " + to_text(std::round(reach) / 1000.0) +
+                    " km away; beyond them their edge goes on");
 }
 
 /// A file with an ocean and a run, and no sonar.
@@ -50,6 +67,7 @@ PropagationCase of_ocean_and_run(const TomlValue& document, const std::filesyste
   environment.finish();
   scenario::read_run(std::move(table), run);
   root.finish();
+  tell_beyond_the_map(run, notes);
   add_warnings(warnings(run), notes);
   return run;
 }
@@ -71,6 +89,7 @@ PropagationCase of_sonar(const TomlValue& document, const Scenario& scenario,
   run.source_depths = {platform.z()};
   TomlTable root(document);
   scenario::read_run(run_of(root), run);
+  tell_beyond_the_map(run, notes);
   add_warnings(warnings(run), notes);
   return run;
 }

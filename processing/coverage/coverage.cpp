@@ -26,6 +26,7 @@
 #include "sonar/reverberation/reverberation_fields.h"
 #include "sonar/scenario/ping_bounds.h"
 #include "sonar/signal/pulse_coherence.h"
+#include "sonar/warnings/warnings.h"
 
 namespace asdic::detail {
 namespace {
@@ -270,6 +271,9 @@ class Maker {
     const auto tell_of = [&](bool there, const std::string& text) {
       if (there) made_.warnings.push_back(text);
     };
+    // Further than a record hears, of which the scenario's own warning tells.
+    const std::string beyond = checks::beyond_the_map(scenario_, settings_.reach);
+    tell_of(!beyond.empty() && checks::beyond_the_map(scenario_).empty(), beyond);
     tell_of(!scenario_.interferers.empty(),
             "interferer: the noise of ships is not in the picture of the area");
     tell_of(pulse_.duration() * pulse_.bandwidth_99() < 10.0 && !parts_.empty(),

@@ -11,6 +11,7 @@
 #include "core/geometry.h"
 #include "raytrace/paths/eigenrays.h"
 #include "raytrace/places/propagation_paths.h"
+#include "raytrace/volume/area_volume.h"
 #include "raytrace/waves/diffraction.h"
 #include "reverb/scattering/energy.h"
 #include "sonar/noise/ambient_noise.h"
@@ -217,23 +218,69 @@ std::string noise_of_a_bent_line(const Scenario& scenario) {
 }
 
 std::string beyond_the_map(const Scenario& scenario) {
+  return beyond_the_map(scenario, 0.5 * fastest_water(scenario) * end_of_record(scenario));
+}
+
+std::string beyond_the_map(const Scenario& scenario, double heard) {
   if (!scenario.area) return "";
-  const double heard = 0.5 * fastest_water(scenario.environment) *
-                       (scenario.pings.recording_start + scenario.pings.recording_duration);
-  double nearest = heard;
-  int towards = 0;
+  Area::Edge nearest{.distance = heard};
+  const std::vector<Transmission> sent = transmissions(scenario);
   for (const Platform& platform : scenario.platforms)
-    for (int bearing = 0; bearing < 360; bearing += 5) {
-      const Vec2 place = platform.track.at(0.0).position.head<2>();
-      const double reach = scenario.area->reach_on_map(place, radians(bearing), nearest);
-      if (reach < nearest) nearest = reach, towards = bearing;
+    for (const double time : {sent.front().time, sent.back().time}) {
+      const Vec3 place = platform.track.at(time).position;
+      const Area::Edge edge = scenario.area->nearest_edge(place.head<2>(), nearest.distance);
+      if (edge.distance < nearest.distance) nearest = edge;
     }
-  if (nearest >= heard) return "";
-  char text[240];
+  if (nearest.distance >= heard) return "";
+  char text[320];
+  std::snprintf(
+      text, sizeof text,
+      "environment.area: sound is followed to %.3g km, and %.100s ends %.3g km away at %.0f "
+      "degrees; beyond it its edge goes on",
+      heard / 1000.0, nearest.map.c_str(), nearest.distance / 1000.0, degrees(nearest.bearing));
+  return text;
+}
+
+std::string wind_elsewhere(const Scenario& scenario) {
+  if (!scenario.area || !scenario.area->wind()) return "";
+  constexpr double felt = 1.0;  // [m/s]
+  double worst = 0.0;
+  for (const Platform& platform : scenario.platforms) {
+    const Vec3 place = platform.track.at(0.0).position;
+    const double wind = scenario.area->wind()->at(place.x(), place.y()).value;
+    if (std::abs(wind - scenario.wind_speed) > std::abs(worst)) worst = wind - scenario.wind_speed;
+  }
+  if (std::abs(worst) < felt) return "";
+  char text[200];
   std::snprintf(text, sizeof text,
-                "environment.area.bathymetry: sound is heard from up to %.3g km, and the map ends "
-                "%.3g km away at %d degrees; beyond it its edge goes on",
-                heard / 1000.0, nearest / 1000.0, towards);
+                "environment.area.wind: noise and roughness are those of %.3g m/s at the map's "
+                "[0, 0]; at a platform it is %.3g m/s",
+                scenario.wind_speed, scenario.wind_speed + worst);
+  return text;
+}
+
+std::string far_from_the_origin(const Scenario& scenario) {
+  if (!scenario.area) return "";
+  double furthest = 0.0;
+  const auto look = [&](const Track& track) {
+    furthest = std::max(furthest, track.at(0.0).position.head<2>().norm());
+  };
+  for (const Platform& platform : scenario.platforms) look(platform.track);
+  for (const Target& target : scenario.targets) look(target.track);
+  char text[240] = "";
+  constexpr double stretched = 500e3;
+  if (scenario.propagation.dimension == 3 && furthest > AreaVolume::measured)
+    std::snprintf(text, sizeof text,
+                  "propagation.dimension: slopes and fronts are measured to %.0f km of the map's "
+                  "[0, 0], and something is %.0f km away: paths that are turned further may be "
+                  "missing",
+                  AreaVolume::measured / 1000.0, furthest / 1000.0);
+  else if (scenario.area->frame().is_geographic() && furthest > stretched)
+    std::snprintf(text, sizeof text,
+                  "environment.origin: something is %.0f km away from it, where the map stretches "
+                  "what lies across by %.2g %%",
+                  furthest / 1000.0,
+                  100.0 * std::pow(furthest / MapFrame::earth_radius, 2.0) / 6.0);
   return text;
 }
 
@@ -392,7 +439,8 @@ std::vector<std::string> warnings(const Scenario& scenario) {
                 checks::noise_table_band(scenario), checks::surface_scattering_range(scenario),
                 checks::reverberation_plane_waves(scenario), checks::noise_of_a_bent_line(scenario),
                 checks::noise_from_below(scenario), checks::left_out_diffraction(scenario),
-                checks::beyond_the_map(scenario), checks::scattering_energy(scenario),
+                checks::beyond_the_map(scenario), checks::wind_elsewhere(scenario),
+                checks::far_from_the_origin(scenario), checks::scattering_energy(scenario),
                 checks::planes_beside_volume(scenario)},
                all);
   return all;

@@ -36,6 +36,12 @@ namespace checks {
 [[nodiscard]] std::string left_out_diffraction(const Scenario& scenario);
 /// Sound that is heard from beyond an area's maps: there their edges go on.
 [[nodiscard]] std::string beyond_the_map(const Scenario& scenario);
+/// The same of sound that is followed to a distance from the platforms [m].
+[[nodiscard]] std::string beyond_the_map(const Scenario& scenario, double distance);
+/// Noise and roughness of another wind than that over a platform.
+[[nodiscard]] std::string wind_elsewhere(const Scenario& scenario);
+/// Places where an area's map, or the bounds that rays in three dimensions take of it, do not hold.
+[[nodiscard]] std::string far_from_the_origin(const Scenario& scenario);
 /// A scattering law of a rough boundary that hands out more energy than comes in.
 [[nodiscard]] std::string scattering_energy(const Scenario& scenario);
 
