@@ -32,6 +32,15 @@ std::uint32_t ScatteringField::copies_of(std::uint32_t ring, int sector) const {
   return copies;
 }
 
+int ScatteringField::sector_of_ring(int sample, std::size_t count,
+                                    std::uint32_t ring) const noexcept {
+  if (!sheet.unlike_all_round()) return sample;
+  // By the golden ratio, so that any few rings tell of bearings that are spread evenly.
+  const double turn = 0.6180339887498949 * ring;
+  const int stride = std::max(1, grid.azimuths / static_cast<int>(count));
+  return (sample + static_cast<int>((turn - std::floor(turn)) * stride)) % grid.azimuths;
+}
+
 std::vector<int> ScatteringField::sample_sectors() const {
   // All round one sector is enough, unless each tells of one choice out of many paths.
   if (azimuthally_symmetric() && sheet.bundled())

@@ -51,6 +51,10 @@ struct ScatteringField {
   [[nodiscard]] std::uint32_t copies_of(std::uint32_t ring, int sector) const;
   /// The sectors in whose middle pairs are looked at where not every scatterer is.
   [[nodiscard]] std::vector<int> sample_sectors() const;
+  /// The sector in place of one of those, at a ring: over an area all sectors have their turn.
+  /// \param count  of sample_sectors()
+  [[nodiscard]] int sector_of_ring(int sample, std::size_t count,
+                                   std::uint32_t ring) const noexcept;
 };
 
 }  // namespace asdic::detail

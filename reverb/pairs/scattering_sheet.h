@@ -175,6 +175,11 @@ class ScatteringSheet {
   [[nodiscard]] bool one_fan() const noexcept { return out_ == back_; }
   /// Somewhere there are very many paths.
   [[nodiscard]] bool bundled() const noexcept;
+  /// Each sector has a plane of its own, and no two are alike: over an area.
+  [[nodiscard]] bool unlike_all_round() const noexcept {
+    return (out_->planes.size() > 1 && !out_->mirrored) ||
+           (back_->planes.size() > 1 && !back_->mirrored);
+  }
   /// The same at every bearing around the grid's middle.
   [[nodiscard]] bool azimuthally_symmetric() const noexcept;
 

@@ -105,8 +105,9 @@ struct Middles {
     const std::uint32_t stands_for = std::min(step, field.grid.rings - ring);
     const double inner = ring * spacing, length = stands_for * spacing;
     for (std::uint32_t i = 0; i < count(); ++i) {
-      const double bearing = field.bearing(sectors[i]), width = 2.0 * pi / count();
-      const double nearest = field.sheet.nearest_end(field.centre(ring, sectors[i]), field.depth);
+      const int sector = field.sector_of_ring(sectors[i], count(), ring);
+      const double bearing = field.bearing(sector), width = 2.0 * pi / count();
+      const double nearest = field.sheet.nearest_end(field.centre(ring, sector), field.depth);
       const auto parts = [&](double size) {
         constexpr double most = 32.0;
         return static_cast<std::uint16_t>(std::clamp(std::ceil(size / nearest), 1.0, most));

@@ -50,7 +50,8 @@ PatchRows patch_rows(std::span<const ScatteringField> fields, const AudibleLimit
     const double share = 1.0 / static_cast<double>(sectors.size());
     for (std::uint32_t ring = 0; ring < field.grid.rings;
          ring += static_cast<std::uint32_t>(result.every))
-      for (const int sector : sectors) add(field, ring, sector, share, result.rows);
+      for (const int sample : sectors)
+        add(field, ring, field.sector_of_ring(sample, sectors.size(), ring), share, result.rows);
   }
   if (result.rows.size() > most) result.rows.resize(most);
   return result;

@@ -57,7 +57,7 @@ class ReverberantSea {
   /// \param pattern  of the transmitter; null: the scenario's vertical line
   explicit ReverberantSea(Scenario s, std::unique_ptr<TransmitPattern> pattern = nullptr)
       : scenario_(std::move(s)),
-        paths_(scenario_.environment, scenario_.transect),
+        paths_(scenario_.environment, scenario_.transect, scenario_.area),
         pulse_(scenario_.pulse),
         pattern_(pattern ? std::move(pattern)
                          : std::make_unique<BeamPattern>(

@@ -2,12 +2,14 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "reverb/pairs/scattering_sheet.h"
 #include "sonar/paths/shared_propagation.h"
 #include "sonar/ping/run_pings.h"
 #include "sonar/reverberation/reverberation_fields.h"
 #include "support/map_of.h"
+#include "support/reverberant_sea.h"
 #include "support/thesis.h"
 
 namespace asdic::detail {
@@ -63,48 +65,53 @@ TEST(Area, AFlatAreaIsTheLayeredOcean) {
   }
 }
 
-// Today's transect, as a map: along it, across it and between.
-TEST(Area, ASlopeIsTheTransect) {
-  const Transect transect{.x = -200.0, .y = 100.0, .bearing = radians(30.0)};
+/// Today's transect, and the same as a map.
+struct SlopeAsBoth {
+  Transect transect{.x = -200.0, .y = 100.0, .bearing = radians(30.0)};
   Environment along = over_sand(summer(), 900.0);
-  along.bottom.shape = BoundaryShape(std::vector{-25e3, 25e3}, std::vector{1400.0, 400.0},
-                                     ShapeInterpolation::piecewise_linear);
-  const auto area = area_of(over_sand(summer(), 900.0), [&](double x, double y) {
-    return along.bottom.depth_at(transect.range_of(x, y));
-  });
-  const PropagationPaths transects(along, transect), areas(along, transect, area);
-  for (const double bearing : {30.0, 75.0, 119.0, 210.0}) {
+  std::shared_ptr<const Area> area;
+
+  SlopeAsBoth() {
+    along.bottom.shape = BoundaryShape(std::vector{-25e3, 25e3}, std::vector{1400.0, 400.0},
+                                       ShapeInterpolation::piecewise_linear);
+    area = area_of(over_sand(summer(), 900.0), [this](double x, double y) {
+      return along.bottom.depth_at(transect.range_of(x, y));
+    });
+  }
+  SlopeAsBoth(const SlopeAsBoth&) = delete;
+  SlopeAsBoth& operator=(const SlopeAsBoth&) = delete;
+
+  /// Paths over 6 km along a bearing [deg]: of the transect and of the map.
+  [[nodiscard]] std::pair<Arrivals, Arrivals> paths(double bearing, int dimension) const {
     const Vec3 from(500.0, 1200.0, 150.0);
     const Vec3 to = from + Vec3(6000.0 * std::sin(radians(bearing)),
                                 6000.0 * std::cos(radians(bearing)), -60.0);
+    const PropagationPaths of_transect(along, transect, nullptr, nullptr,
+                                       volume_of(along, transect, nullptr, dimension)),
+        of_area(along, transect, area, nullptr, volume_of(along, transect, area, dimension));
+    return {of_transect.find(from, to, 4000.0, some), of_area.find(from, to, 4000.0, some)};
+  }
+};
+
+// Along it, across it and between.
+TEST(Area, ASlopeIsTheTransect) {
+  const SlopeAsBoth slope;
+  for (const double bearing : {30.0, 75.0, 119.0, 210.0}) {
     SCOPED_TRACE(bearing);
-    expect_alike(areas.find(from, to, 4000.0, some), transects.find(from, to, 4000.0, some), 1e-6,
-                 0.05);
+    const auto [transect, area] = slope.paths(bearing, 2);
+    expect_alike(area, transect, 1e-6, 0.05);
   }
 }
 
-// In three dimensions, across the slope, where rays are turned sideways: the transect as a volume.
+// In three dimensions, across the slope, where rays are turned sideways.
 TEST(Area, ASlopeInThreeDimensionsIsTheTransects) {
-  const Transect transect{.x = -200.0, .y = 100.0, .bearing = radians(30.0)};
-  Environment along = over_sand(summer(), 900.0);
-  along.bottom.shape = BoundaryShape(std::vector{-25e3, 25e3}, std::vector{1400.0, 400.0},
-                                     ShapeInterpolation::piecewise_linear);
-  const auto area = area_of(over_sand(summer(), 900.0), [&](double x, double y) {
-    return along.bottom.depth_at(transect.range_of(x, y));
-  });
-  const PropagationPaths transects(along, transect, nullptr, nullptr,
-                                   volume_of(along, transect, nullptr, 3)),
-      areas(along, transect, area, nullptr, volume_of(along, transect, area, 3));
-  ASSERT_NE(areas.volume(), nullptr);
+  const SlopeAsBoth slope;
   for (const double bearing : {75.0, 120.0}) {
-    const Vec3 from(500.0, 1200.0, 150.0);
-    const Vec3 to = from + Vec3(6000.0 * std::sin(radians(bearing)),
-                                6000.0 * std::cos(radians(bearing)), -60.0);
     SCOPED_TRACE(bearing);
-    const Arrivals found = areas.find(from, to, 4000.0, some);
-    expect_alike(found, transects.find(from, to, 4000.0, some), 1e-6, 0.05);
+    const auto [transect, area] = slope.paths(bearing, 3);
+    expect_alike(area, transect, 1e-6, 0.05);
     double sideways = 0.0;
-    for (const Arrival& a : found) sideways = std::max(sideways, std::abs(a.launch_deflection));
+    for (const Arrival& a : area) sideways = std::max(sideways, std::abs(a.launch_deflection));
     EXPECT_GT(sideways, 1e-3);
   }
 }
@@ -134,12 +141,14 @@ struct Slope {
 
 constexpr double speed = 1500.0, mu = 2e-3, far = 5000.0;
 
-/// ∫ μ sin²θ/d⁴ dA over what a straight ray sees of the floor.
-Sectors integral(const Vec3& source, const std::function<Slope(double, double)>& floor) {
-  Sectors sectors;
+/// ∫ μ sin²θ/d⁴ dA over what a straight ray sees of the floor, piece by piece: where, when and how
+/// much. \param visit  of x and y from the source, delay and power
+template <class Visit>
+void integrate(const Vec3& source, const std::function<Slope(double, double)>& floor,
+               double furthest, const Visit& visit) {
   constexpr double dr = 10.0;
   constexpr int around = 720;
-  for (double r = 0.5 * dr; r < far; r += dr)
+  for (double r = 0.5 * dr; r < furthest; r += dr)
     for (int i = 0; i < around; ++i) {
       const double bearing = 2.0 * pi * (i + 0.5) / around;
       const double x = r * std::sin(bearing), y = r * std::cos(bearing);
@@ -152,8 +161,15 @@ Sectors integral(const Vec3& source, const std::function<Slope(double, double)>&
         seen = floor(source.x() + s * x, source.y() + s * y).depth > source.z() + s * down - 1e-6;
       if (!seen) continue;
       const double area = facet * r * dr * 2.0 * pi / around;
-      sectors.add(x, y, 2.0 * d / speed, mu * sine * sine / std::pow(d, 4) * area);
+      visit(x, y, 2.0 * d / speed, mu * sine * sine / std::pow(d, 4) * area);
     }
+}
+
+Sectors integral(const Vec3& source, const std::function<Slope(double, double)>& floor) {
+  Sectors sectors;
+  integrate(source, floor, far, [&](double x, double y, double delay, double power) {
+    sectors.add(x, y, delay, power);
+  });
   return sectors;
 }
 
@@ -233,6 +249,68 @@ Slope cone(double x, double y) {
 TEST(Area, DirectReverberationOfAConicalSeamountIsTheIntegral) {
   compare_with_integral({0.0, 0.0, 500.0}, cone);
   compare_with_integral({-3000.0, 500.0, 500.0}, cone);
+}
+
+// The level that a ping expects is looked for in some of the sectors of every ring. Beside a cone
+// one side is up to 20 dB louder than the other: all bearings must have their turn. 0.3 dB.
+TEST(Area, ExpectedReverberationIsThatOfAllBearings) {
+  Scenario s = support::even_sea();
+  s.environment = over_sand(SoundSpeedProfile::isovelocity(speed), 4000.0);
+  s.area = area_of(
+      s.environment, [](double x, double y) { return cone(x, y).depth; }, 100.0);
+  const Vec3 source(-3000.0, 500.0, 500.0);
+  s.platforms[0].track.start.position = source;
+  s.transmitters[0].beam = LineBeam{.taper = Taper::omnidirectional};
+  s.pulse = {.waveform = Cw{}, .duration = 0.2, .window = PulseWindow::none};
+  s.reverberation.surface_scatters = false;
+  s.reverberation.bottom = Lambert{.mu_db = db_from_power(mu)};
+  s.reverberation.azimuths = 72;
+  s.pings.recording_duration = 7.0;
+  const support::ReverberantSea sea(s);
+  const PingReverberation ping = sea.ping(1);
+  for (const double t : {2.5, 3.5, 4.5, 5.5, 6.5}) {
+    double received = 0.0;
+    integrate(source, cone, 5500.0, [&](double, double, double delay, double power) {
+      if (delay < t && delay > t - 0.2) received += power;
+    });
+    EXPECT_NEAR(ping.expected_db(t), 220.0 + db_from_power(received), 0.3) << t;
+  }
+}
+
+// Half of the map is land, where volume and kinds have no values: nobody asks for them there, and
+// what sound meets is the coast.
+TEST(Area, LandNeedsNoWaterAndNoKinds) {
+  const double none = std::nan("");
+  const auto beach = [](double x, double) { return 300.0 - 0.1 * x; };
+  const auto at_sea = [&](double x, double y) { return beach(x, y) > -200.0; };
+  const support::MapOf volume(-30e3, 30e3, 31, 2, [&](double x, double y, std::size_t level) {
+    return at_sea(x, y) ? 1500.0 + 5.0 * double(level) : none;
+  });
+  const support::MapOf kinds(-30e3, 30e3, 601, 1, [&](double x, double y, std::size_t) {
+    return beach(x, y) > 0.0 ? 4.0 : none;
+  });
+  const MapFrame frame = MapFrame::projected(0.0, 0.0);
+  const Environment ocean = over_sand(SoundSpeedProfile::isovelocity(speed), 300.0);
+  const auto area = std::make_shared<const Area>(
+      Area::Maps{.floor = floor_of(30e3, 100.0, beach),
+                 .water = WaterMap(volume.grid, frame, {0.0, 300.0}, {"volume"}),
+                 .seabed = ClassMap(kinds.grid, frame, {"kinds"}),
+                 .materials = {{4, FluidHalfSpace{}}}},
+      ocean);
+  const PropagationPaths paths(area->section({0.0, 0.0}, 0.0, 10e3), {}, area);
+  const auto fan = BoundaryFans(paths).around(
+      {0.0, 0.0, 50.0}, GroundLevel(BoundaryKind::bottom),
+      {.sectors = 8, .spacing = 50.0, .max_range = 20e3, .frequency = 4000.0, .limits = some});
+  const auto furthest = [&](double bearing) {
+    double r = 0.0;
+    const FanPlane& plane = fan->towards(radians(bearing));
+    for (std::size_t cell = 0; cell < plane.paths->cells(); ++cell)
+      for (const BoundaryPath& path : plane.paths->paths(cell))
+        if (std::abs(path.amplitude) > 0.0) r = plane.paths->range(cell);
+    return r;
+  };
+  EXPECT_LT(furthest(112.0), 3500.0);  // the coast is 3 km east
+  EXPECT_GT(furthest(292.0), 10e3);
 }
 
 }  // namespace
