@@ -47,6 +47,14 @@ void add_nodes(const Scenario& scenario, const Track& track, const Vec3& offset,
   for (const double x : places)
     if ((x - begin) * (x - end) < 0.0)
       moments.push_back({from + (to - from) * (x - begin) / (end - begin), key});
+  if (!scenario.area) return;
+  // Over a map: at every half step of its grid.
+  const Vec2 first = (track.at(from).position + offset).head<2>();
+  const double way = (track.at(to).position - track.at(from).position).head<2>().norm();
+  constexpr double most = 100e3;
+  const double pieces = std::min(most, std::ceil(2.0 * way / scenario.area->spacing(first)));
+  for (double piece = 1.0; piece < pieces; piece += 1.0)
+    moments.push_back({std::lerp(from, to, piece / pieces), key});
 }
 
 /// All that could be the worst of a track, moved by an offset: its ends, its waypoints, and where

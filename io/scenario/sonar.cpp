@@ -16,7 +16,11 @@ void know_water(Fields& settings, const Scenario& scenario) {
   settings.know("environment.wind_speed", scenario.wind_speed);
   settings.know("environment.shallowest",
                 surface.shape ? surface.shape->shallowest() : surface.depth);
-  settings.know("environment.deepest", bottom.shape ? bottom.shape->deepest() : bottom.depth);
+  constexpr double around = 100e3;  // of an area [m]
+  settings.know("environment.deepest", scenario.area
+                                           ? scenario.area->bounds(Vec2::Zero(), around).deepest
+                                       : bottom.shape ? bottom.shape->deepest()
+                                                      : bottom.depth);
 }
 
 /// Where ranges and bearings of targets begin.

@@ -10,6 +10,7 @@
 #include "sonar/reverberation/reverberation_bounces.h"
 #include "sonar/reverberation/reverberation_ends.h"
 #include "sonar/scenario/ping_bounds.h"
+#include "sonar/scenario/sampling.h"
 
 namespace asdic::detail {
 namespace {
@@ -112,8 +113,7 @@ ReverberationFields::ReverberationFields(const Scenario& scenario, const Propaga
                             ? resolved_sectors(scenario, speed_at_surface(scenario, paths))
                             : 1) {
   if (!scenario.area || !scenario.area->wind()) return;
-  const double heard =
-      0.5 * fastest_water_ * (scenario.pings.recording_start + scenario.pings.recording_duration);
+  const double heard = 0.5 * fastest_water_ * end_of_record(scenario);
   const auto [least, most] =
       scenario.area->winds(scenario.platforms[0].track.at(0.0).position.head<2>(), heard + 20e3);
   for (int kind = wind_kind(least); kind <= wind_kind(most); ++kind) winds_.push_back(kind);

@@ -5,6 +5,7 @@
 
 #include "reverb/scattering/forward_scatter.h"
 #include "reverb/scattering/motion.h"
+#include "sonar/scenario/sampling.h"
 
 namespace asdic::detail {
 
@@ -24,8 +25,7 @@ double fastest_water(const Scenario& scenario) {
   const double along = fastest_water(scenario.environment);
   if (!scenario.area || !scenario.area->water()) return along;
   constexpr double no_slower = 1600.0;
-  const double heard =
-      0.5 * no_slower * (scenario.pings.recording_start + scenario.pings.recording_duration);
+  const double heard = 0.5 * no_slower * end_of_record(scenario);
   const Vec3 place = scenario.platforms[0].track.at(0.0).position;
   return std::max(along, scenario.area->bounds(place.head<2>(), heard).fastest);
 }
