@@ -13,7 +13,6 @@
 #include "io/climatology/water.h"
 #include "io/climatology/wind.h"
 #include "io/hdf5/scale.h"
-#include "raytrace/area/map_frame.h"
 
 namespace asdic::detail {
 namespace {
@@ -31,7 +30,8 @@ struct Box {
 };
 
 Box box_about(const OceanRequest& request, double side) {
-  const double half = degrees(0.5 * side / MapFrame::earth_radius);
+  constexpr double least_radius = 6.335e6;  // of the Earth's curvature: the box is no smaller [m]
+  const double half = degrees(0.5 * side / least_radius);
   const double furthest = std::abs(request.latitude) + half;
   if (!(side > 0.0 && furthest < 89.0 && half < 45.0))
     throw InputError({.where = "area",

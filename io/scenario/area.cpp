@@ -28,10 +28,13 @@ struct MapTable {
 struct BathymetryTable {
   MapTable map = {};
   MapInterpolation interpolation = MapInterpolation::bicubic;
+  double water_level = 0.0;
 
   void describe(Fields& field) {
+    constexpr Quantity level{.noun = "height", .unit = "m", .low = -50.0, .high = 50.0};
     map.describe(field);
     field("interpolation", interpolation, "how the floor runs between the places of the grid");
+    field(seldom("water_level"), water_level, level, "of the sea over the datum of the depths");
   }
 };
 
@@ -82,7 +85,7 @@ struct AreaTable {
 
 AreaTable table_of(const AreaSettings& settings) {
   AreaTable table{.easting = settings.easting, .northing = settings.northing};
-  table.bathymetry = {{settings.bathymetry}, settings.interpolation};
+  table.bathymetry = {{settings.bathymetry}, settings.interpolation, settings.water_level};
   if (settings.sound_speed) table.sound_speed = MapTable{*settings.sound_speed};
   if (settings.seabed) {
     table.seabed = SeabedTable{{*settings.seabed}, {}};
@@ -113,7 +116,8 @@ AreaReading::AreaReading(TomlTable table, const OceanReading& reading,
                .easting = form.easting,
                .northing = form.northing,
                .bathymetry = form.bathymetry.map.map,
-               .interpolation = form.bathymetry.interpolation};
+               .interpolation = form.bathymetry.interpolation,
+               .water_level = form.bathymetry.water_level};
   if (form.sound_speed) settings_.sound_speed = form.sound_speed->map;
   if (form.seabed) settings_.seabed = form.seabed->map.map;
   if (form.wind) settings_.wind = form.wind->map;
@@ -139,7 +143,7 @@ AreaReading::AreaReading(TomlTable table, const OceanReading& reading,
   const OpenedMap floor =
       open(settings_.bathymetry, climatology::bathymetry_quantity(), "bathymetry", false);
   floor_.emplace(floor.grid, frame(floor), settings_.interpolation, floor.depth_sign,
-                 MapOrigin{floor.name});
+                 MapOrigin{floor.name}, settings_.water_level);
   if (!floor_->covers(0.0, 0.0))
     throw table_.fault("bathymetry", "a map that holds the scenario's [0, 0]", floor.name);
   if (settings_.sound_speed) {

@@ -67,11 +67,12 @@ MapValue on_map(const OnAxes& f, const MapFrame::OnGrid& p) noexcept {
 }  // namespace
 
 ScalarMap::ScalarMap(std::shared_ptr<const MapGrid> grid, MapFrame frame,
-                     MapInterpolation interpolation, double sign, MapOrigin origin)
+                     MapInterpolation interpolation, double sign, MapOrigin origin, double more)
     : grid_(std::move(grid)),
       frame_(frame),
       interpolation_(interpolation),
       sign_(sign),
+      more_(more),
       origin_(std::move(origin)) {}
 
 bool ScalarMap::covers(double x, double y) const noexcept {
@@ -112,7 +113,7 @@ MapValue ScalarMap::bicubic(const MapFrame::OnGrid& place) const {
     f.vv += b.bend[j] * value;
   }
   check(f.value, place.u, place.v);
-  f = {sign_ * f.value, sign_ * f.u, sign_ * f.v, sign_ * f.uu, sign_ * f.uv, sign_ * f.vv};
+  f = {sign_ * f.value + more_, sign_ * f.u, sign_ * f.v, sign_ * f.uu, sign_ * f.uv, sign_ * f.vv};
   return on_map(f, place);
 }
 
@@ -128,7 +129,7 @@ MapValue ScalarMap::faceted(const MapFrame::OnGrid& place) const {
   // Below the diagonal the corners (0,0), (1,0), (1,1); above it (0,0), (0,1), (1,1).
   const double along = s >= t ? z(1, 0) - z(0, 0) : z(1, 1) - z(0, 1);
   const double across = s >= t ? z(1, 1) - z(1, 0) : z(0, 1) - z(0, 0);
-  OnAxes f{.value = sign_ * (z(0, 0) + s * along + t * across),
+  OnAxes f{.value = sign_ * (z(0, 0) + s * along + t * across) + more_,
            .u = u == place.u ? sign_ * along / width : 0.0,
            .v = v == place.v ? sign_ * across / height : 0.0};
   check(f.value, place.u, place.v);
@@ -270,7 +271,26 @@ ClassMap::ClassMap(std::shared_ptr<const MapGrid> grid, MapFrame frame, MapOrigi
 int ClassMap::at(double x, double y) const {
   MapFrame::OnGrid place = frame_.on_grid(x, y);
   place.u = on_axis(frame_, grid_->x(), place.u);
-  const double value = double(*grid_->at(grid_->x().nearest(place.u), grid_->y().nearest(place.v)));
+  const MapAxis &across = grid_->x(), &up = grid_->y();
+  const std::size_t column = across.nearest(place.u), row = up.nearest(place.v);
+  double value = double(*grid_->at(column, row));
+  if (!std::isnan(value)) return static_cast<int>(std::lround(value));
+  // A coast runs through cells that the map counts as land: the next cell's kind goes on there.
+  const Vec2 step = frame_.metres_per_unit(x, y);
+  double nearest = infinity;
+  const auto look = [&](std::size_t i, std::size_t j) {
+    const double there = double(*grid_->at(i, j));
+    const double away =
+        Vec2((across.places()[i] - place.u) * step.x(), (up.places()[j] - place.v) * step.y())
+            .norm();
+    if (std::isnan(there) || away >= nearest) return;
+    nearest = away;
+    value = there;
+  };
+  for (std::size_t j = row - std::min<std::size_t>(row, 1); j < std::min(row + 2, up.size()); ++j)
+    for (std::size_t i = column - std::min<std::size_t>(column, 1);
+         i < std::min(column + 2, across.size()); ++i)
+      look(i, j);
   if (std::isnan(value)) throw_hole(origin_.name, frame_, place.u, place.v, "a kind of sea floor");
   return static_cast<int>(std::lround(value));
 }

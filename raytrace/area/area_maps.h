@@ -40,8 +40,9 @@ enum class MapInterpolation {
 class ScalarMap {
  public:
   /// \param sign  of the values against those of the grid: −1 makes depths of heights
+  /// \param more  than the grid's: the sea's height over the datum of depths
   ScalarMap(std::shared_ptr<const MapGrid> grid, MapFrame frame, MapInterpolation interpolation,
-            double sign, MapOrigin origin);
+            double sign, MapOrigin origin, double more = 0.0);
 
   /// \throws InputError where the map has a hole, by its place
   [[nodiscard]] MapValue at(double x, double y) const;
@@ -65,7 +66,7 @@ class ScalarMap {
   std::shared_ptr<const MapGrid> grid_;
   MapFrame frame_;
   MapInterpolation interpolation_;
-  double sign_;
+  double sign_, more_;
   MapOrigin origin_;
 };
 
@@ -106,6 +107,7 @@ class ClassMap {
  public:
   ClassMap(std::shared_ptr<const MapGrid> grid, MapFrame frame, MapOrigin origin);
 
+  /// Of the nearest cell; where it has none, of the nearest of those around it.
   /// \throws InputError where there is none
   [[nodiscard]] int at(double x, double y) const;
   [[nodiscard]] bool covers(double x, double y) const noexcept;

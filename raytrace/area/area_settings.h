@@ -29,6 +29,7 @@ struct AreaSettings {
   double easting = 0.0, northing = 0.0;   ///< of the map's [0, 0], for projected grids [m]
   MapFile bathymetry;
   MapInterpolation interpolation = MapInterpolation::bicubic;
+  double water_level = 0.0;  ///< of the sea over the datum of depths [m]
   std::optional<MapFile> sound_speed, seabed, wind;
   std::vector<SeabedClass> classes;
 

@@ -3,7 +3,7 @@
 
 namespace asdic::detail {
 
-/// A place on the Earth [°].
+/// A place on the Earth [°], on the ellipsoid of WGS 84.
 struct GeographicPlace {
   double latitude = 0.0;   ///< north
   double longitude = 0.0;  ///< east
@@ -13,11 +13,13 @@ struct GeographicPlace {
 
 /// How a scenario's map lies over the grids that fill it. x east, y north [m] of the map's [0, 0].
 ///
-/// Geographic grids have longitudes and latitudes. The map is the azimuthal equidistant projection
-/// about its [0, 0]: distance from there and bearing there are true. Over a distance d the map
-/// stretches what lies across by (d/R)/sin(d/R): 0.004 % at 100 km, 0.1 % at 500 km. The Earth is a
-/// sphere of 6371 km. Snyder, Map Projections: A Working Manual (1987), ch. 25. Other grids are
-/// projected already, with axes in m; the map is the same shifted.
+/// Geographic grids have longitudes and latitudes of WGS 84. The ellipsoid is mapped on the sphere
+/// that lies closest to it at the map's [0, 0], conformally (Gauss), and that by the azimuthal
+/// equidistant projection about [0, 0] on the map. So distances and bearings from there are those
+/// of geodesics, to 10⁻⁶ at 100 km. Over a distance d the map stretches what lies across by
+/// (d/R)/sin(d/R): 0.004 % at 100 km, 0.1 % at 500 km. Snyder, Map Projections: A Working Manual
+/// (1987), ch. 3 and 25. Other grids are projected already, with axes in m; the map is the same
+/// shifted.
 class MapFrame {
  public:
   /// \param origin  of the map
@@ -25,7 +27,7 @@ class MapFrame {
   /// \param easting, northing  of the map's [0, 0] on the grids' axes [m]
   [[nodiscard]] static MapFrame projected(double easting, double northing);
 
-  static constexpr double earth_radius = 6.371e6;  ///< [m]
+  static constexpr double earth_radius = 6.371e6;  ///< the mean, where that will do [m]
 
   /// Where a place of the map is on the axes of a grid ([°] or [m]), and how that changes.
   struct OnGrid {
@@ -47,7 +49,10 @@ class MapFrame {
   bool geographic_ = false;
   GeographicPlace origin_;
   double easting_ = 0.0, northing_ = 0.0;
-  double sine_ = 0.0, cosine_ = 1.0;  // of the origin's latitude
+  // Gauss' sphere: its radius; isometric latitude there = stretch·isometric latitude + shift,
+  // longitude from the origin there = stretch·longitude from the origin.
+  double radius_ = earth_radius, stretch_ = 1.0, shift_ = 0.0;
+  double sine_ = 0.0, cosine_ = 1.0;  // of the origin's latitude on the sphere
 };
 
 }  // namespace asdic::detail

@@ -22,7 +22,8 @@ import h5py
 
 ROOT = Path(__file__).resolve().parents[3]
 ASDIC = os.environ["ASDIC"]
-EARTH = 6.371e6  # [m]
+EARTH = 6378137.0  # [m] WGS 84's equator
+SQUARE = (2 - 1 / 298.257223563) / 298.257223563  # of its eccentricity
 
 
 # The sea of the test: a cone on a plain, whose summit is a grid point; water by month.
@@ -30,10 +31,16 @@ SUMMIT = (31.0 + 0.5 / 240.0, -60.0 + 0.5 / 240.0)  # 15 arcseconds, cells' midd
 PLAIN, TOP, SLOPE = 4000.0, 1000.0, 0.2
 
 
+def radii(lat):
+    """Of a step to the north, and of one to the east about the axis [m]."""
+    w = 1 - SQUARE * np.sin(np.radians(lat)) ** 2
+    return EARTH * (1 - SQUARE) / w ** 1.5, EARTH / np.sqrt(w) * np.cos(np.radians(lat))
+
+
 def distance(lat, lon, lat0, lon0):
-    a = np.sin(np.radians(lat - lat0) / 2) ** 2 + np.cos(np.radians(lat)) * np.cos(np.radians(lat0)) * \
-        np.sin(np.radians(lon - lon0) / 2) ** 2
-    return 2 * EARTH * np.arcsin(np.sqrt(a))
+    """On the ellipsoid, of places tens of kilometres apart: by the radii half way."""
+    north, east = radii((lat + lat0) / 2)
+    return np.hypot(north * np.radians(lat - lat0), east * np.radians(lon - lon0))
 
 
 def floor(lat, lon):
@@ -288,7 +295,7 @@ class Gebco(Folder):
         # Everywhere the floor is the cone, over the seam of the tiles too: a cell's diagonal is
         # 600 m, and bilinear of 0.2 within it is off by some metres.
         for r, z in zip(shape["range"], shape["depth"]):
-            lon = -60.5 + np.degrees(r / EARTH / np.cos(np.radians(SUMMIT[0])))
+            lon = -60.5 + np.degrees(r / radii(SUMMIT[0])[1])
             self.assertLess(abs(z - floor(SUMMIT[0], lon)), 25.0, r)
 
     def test_along_the_parallel_of_grid_points(self):
@@ -621,11 +628,11 @@ sample_rate = 4000.0
             self.assertAlmostEqual(f["platform_latitude"][0], 31.0, 9)
             lat, lon = f["target_latitude"][0, 0], f["target_longitude"][0, 0]
             self.assertAlmostEqual(distance(lat, lon, 31.0, -60.5), 5000.0, delta=0.01)
-            # Its bearing from the origin by the formula of the inverse problem.
-            a, b = np.radians([31.0, lat])
-            d = np.radians(lon + 60.5)
-            bearing = np.arctan2(np.sin(d) * np.cos(b), np.cos(a) * np.sin(b) - np.sin(a) * np.cos(b) * np.cos(d))
-            self.assertAlmostEqual(np.degrees(bearing), np.degrees(np.arctan2(3, 4)), 6)
+            # Its bearing from the origin: half way, less half of what the meridians turn.
+            north, east = radii((lat + 31.0) / 2)
+            bearing = np.degrees(np.arctan2(east * (lon + 60.5), north * (lat - 31.0)))
+            bearing -= (lon + 60.5) / 2 * np.sin(np.radians((lat + 31.0) / 2))
+            self.assertAlmostEqual(bearing, np.degrees(np.arctan2(3, 4)), 4)
 
 
 class Area(Folder):
@@ -648,7 +655,7 @@ class Area(Folder):
         with netCDF4.Dataset(self.folder / "place.nc") as f:
             lat, lon = f["latitude"][:], f["longitude"][:]
             self.assertAlmostEqual(float(np.diff(lat).mean()), 1 / 240, 9)
-            half = np.degrees(20e3 / EARTH)
+            half = np.degrees(20e3 / radii(SUMMIT[0])[0])
             self.assertLess(lat[0], SUMMIT[0] - half)
             self.assertGreater(lat[-1], SUMMIT[0] + half)
             self.assertLess(np.ptp(np.diff(lon)), 1e-9)  # no gap between the tiles
@@ -743,7 +750,7 @@ class Guide(Folder):
             self.assertAlmostEqual(f.attrs["latitude_deg"], 33.7, 9)
             self.assertEqual(f.attrs["complete"], 1)
             self.assertGreater(f["summary/paths"][0, 0], 0)
-            self.assertAlmostEqual(f["target_longitude"][0, 0], -63.0 + np.degrees(12e3 / EARTH / np.cos(np.radians(33.7))), 4)
+            self.assertAlmostEqual(f["target_longitude"][0, 0], -63.0 + np.degrees(12e3 / radii(33.7)[1]), 4)
 
 
 if __name__ == "__main__":
