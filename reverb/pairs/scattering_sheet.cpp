@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <numbers>
+#include <optional>
 
 #include "core/doppler.h"
 #include "core/mixed_bits.h"
@@ -257,6 +258,17 @@ void ScatteringSheet::sum_up(Way way, const Leg& leg, const TakenGroup& taken, d
   }
 }
 
+double ScatteringSheet::most_shift(const Leg& back, double delay) const noexcept {
+  if (!ends_.legs.empty()) return infinity;
+  if (!receiver_moves_) return 0.0;
+  constexpr double slowest = 1.0 / 1000.0;  // [s/m] no path is slower
+  const double speed = ends_.receiver.velocity.norm(), ratio = speed * slowest;
+  if (ratio > 0.1) return infinity;
+  const double straight = 2.0 * ratio * delay / (1.0 - 2.0 * ratio), later = delay + straight;
+  return straight +
+         0.5 * later * (slowest * speed * speed / std::max(1.0, back.range) * later + 0.2 * ratio);
+}
+
 void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const AudibleLimits* limits,
                                double ring, double below, std::uint64_t chance) const {
   stop_point();                      // who asks at a place asks at thousands
@@ -317,6 +329,15 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
   };
   sum_all(Way::out, out, pairs.out_taken_, pairs.sent_);
   sum_all(Way::back, back, pairs.back_taken_, pairs.home_);
+  pairs.way_home_.resize(backs);
+  pairs.power_home_.resize(backs);
+  double longest = 0.0;
+  for (std::size_t n = 0; n < backs; ++n) {
+    const std::size_t j = back.groups[pairs.back_taken_[n].group].strongest;
+    pairs.way_home_[n] = delay_beyond(back.paths[j], back.beyond) + back.ends[j].down * below;
+    pairs.power_home_[n] = std::norm(pairs.home_[n * (1 + points)]);
+    longest = std::max(longest, pairs.way_home_[n]);
+  }
   for (std::size_t m = 0; m < outs; ++m) {
     const TakenGroup& first = pairs.out_taken_[m];
     const std::size_t i = out.groups[first.group].strongest;
@@ -324,13 +345,22 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
     const PathEnds& a_ends = out.ends[i];
     const std::complex<double>* const sent = &pairs.sent_[m * (1 + points)];
     if (sent[0] == 0.0 && points == 0) continue;
-    const Grazing grazing_in = grazing_of(a, a_ends, out.facet);
+    std::optional<Grazing> grazing_in;  // once it is asked for
     const double there = delay_beyond(a, out.beyond) + a_ends.down * below;
+    const double sent_power = std::norm(sent[0]);
+    // Most pairs are too faint whenever they are received, and need not be known closer.
+    const bool in_a_glance =
+        limits && points == 0 &&
+        most_shift(back, std::max(received, there + longest)) < 0.99 * limits->segment;
     for (std::size_t n = 0; n < backs; ++n) {
       // Pairs within a bundle are those of two draws: that of a group with itself is one of many.
       const TakenGroup& other = pairs.back_taken_[n];
       const bool of_many = first.of_many() || other.of_many();
       const bool one_bundle = of_many && one_cell && first.bundle == other.bundle;
+      if (in_a_glance && !one_bundle &&
+          sent_power * pairs.power_home_[n] * ring * strongest <=
+              limits->about(there + pairs.way_home_[n]))
+        continue;
       const std::complex<double>* home = &pairs.home_[n * (1 + points)];
       TakenGroup second = other;
       if (one_bundle) {
@@ -342,7 +372,8 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
       const std::size_t j = back.groups[second.group].strongest;
       const BoundaryPath& b = back.paths[j];
       const PathEnds& b_ends = back.ends[j];
-      double delay = there + delay_beyond(b, back.beyond) + b_ends.down * below;
+      double delay = there + (one_bundle ? delay_beyond(b, back.beyond) + b_ends.down * below
+                                         : pairs.way_home_[n]);
       const Kinematics* on = &ends_.receiver;
       if (!ends_.legs.empty()) {
         const Reception reception = received_under_way(back, j, received, delay);
@@ -365,17 +396,18 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
       // A group of a bundle with another of it is received twice where its reciprocal is in phase.
       const bool twice = one_bundle && in_phase_ && i != j;
       const double gain = twice ? std::sqrt(2.0) : 1.0;
-      const double before = std::norm(sent[0]) * std::norm(home[0]) * gain * gain;
+      const double before = sent_power * std::norm(home[0]) * gain * gain;
       if (limits && points == 0 && before * ring * strongest <= least) continue;
+      if (!grazing_in) grazing_in = grazing_of(a, a_ends, out.facet);
       const Grazing grazing_out = grazing_of(b, b_ends, back.facet);
       double* const sigma = &pairs.sigma_[(m * backs + n) * (1 + points)];
       if (sigma[0] < 0.0) {
         cross_sections(law,
-                       {.angles = {.grazing_in = grazing_in.angle,
+                       {.angles = {.grazing_in = grazing_in->angle,
                                    .grazing_out = grazing_out.angle,
                                    .azimuth = turn},
-                        .sin_in = grazing_in.sine,
-                        .cos_in = grazing_in.cosine,
+                        .sin_in = grazing_in->sine,
+                        .cos_in = grazing_in->cosine,
                         .sin_out = grazing_out.sine,
                         .cos_out = grazing_out.cosine,
                         .half_turn = half_turn},
@@ -406,7 +438,7 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
                              .amplitude = sent[0] * home[0] * (std::sqrt(sigma[0]) * gain),
                              .power = power,
                              .cross_section = sigma[0],
-                             .grazing_in = grazing_in.angle,
+                             .grazing_in = grazing_in->angle,
                              .grazing_out = grazing_out.angle,
                              .area = out.facet ? out.facet->area : 1.0,
                              .leaving = out.direction,

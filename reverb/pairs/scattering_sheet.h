@@ -94,6 +94,7 @@ struct PathPairs {
   std::vector<TakenGroup> out_taken_, back_taken_;
   // [taken × (centre, points of the band)], with their gains; then one more of the way back
   std::vector<std::complex<double>> sent_, home_, other_home_;
+  std::vector<double> way_home_, power_home_;  // [taken] delay [s], and norm of home_ at the centre
   std::vector<double>
       sigma_;  // [out × back × (centre, points of the band)], below 0: not known yet
 };
@@ -107,6 +108,12 @@ struct AudibleLimits {
   [[nodiscard]] double at(double delay) const noexcept {
     const auto i = static_cast<std::size_t>(std::max(0.0, delay) / segment);
     return i < least.size() ? least[i] : 0.0;
+  }
+  /// No more than at() of any delay less than a segment away.
+  [[nodiscard]] double about(double delay) const noexcept {
+    const auto i = static_cast<std::size_t>(std::max(0.0, delay) / segment);
+    if (i + 1 >= least.size()) return 0.0;
+    return std::min({least[i > 0 ? i - 1 : 0], least[i], least[i + 1]});
   }
 };
 
@@ -218,6 +225,9 @@ class ScatteringSheet {
   void sum_up(Way way, const Leg& leg, const TakenGroup& taken, double below, double stretched,
               std::complex<double>* sums) const noexcept;
   void weigh(Way way);
+  /// Bounds how much later or earlier a receiver that keeps its velocity receives what comes home
+  /// from a place than one that stays [s]. \param delay  the latest for one that stays
+  [[nodiscard]] double most_shift(const Leg& back, double delay) const noexcept;
   /// When a receiver that changes its velocity receives what comes along a path.
   struct Reception {
     double delay = 0.0;                    // of the leading edge [s]
