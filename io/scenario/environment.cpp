@@ -69,6 +69,20 @@ void describe_wind(Fields& field, double& wind_speed) {
   field(live("wind_speed"), wind_speed, quantity::wind_speed, "at 10 m height");
 }
 
+/// That of the map's [0, 0], where there is a map of it.
+double read_wind(TomlTable& table, const AreaReading* area) {
+  if (const auto mapped = area != nullptr ? area->wind_speed(0.0, 0.0) : std::nullopt) {
+    if (table.has("wind_speed"))
+      throw table.fault("wind_speed", "none beside [environment.area.wind], which says it");
+    return *mapped;
+  }
+  double wind = default_wind_speed();
+  KnownSettings known;
+  TomlReader reader(table, known);
+  describe_wind(reader, wind);
+  return wind;
+}
+
 constexpr std::string_view what_origin = "where on the Earth the map's [0, 0] is";
 
 void describe_spreading(Fields& field, Spreading& spreading) {
@@ -124,8 +138,7 @@ Environment read_ocean(TomlTable& table, const OceanReading& reading) {
     read_sound_speed(table.table("sound_speed"), reading, ocean);
   }
   read_boundary_materials(bottom, reading, ocean, false, ocean.bottom);
-  double wind = default_wind_speed();
-  describe_wind(reader, wind);
+  const double wind = read_wind(table, reading.area);
   read_roughness(bottom, wind, false, ocean.bottom.roughness);
   bottom.finish();
   read_boundary_materials(surface, reading, ocean, true, ocean.surface);
@@ -152,13 +165,13 @@ struct SonarOcean {
   const Scenario& scenario;
 
   void describe(Fields& field) const {
+    const Area* const area = scenario.area.get();
     double wind_speed = scenario.wind_speed;
-    describe_wind(field, wind_speed);
+    if (area == nullptr || !area->wind()) describe_wind(field, wind_speed);
     std::optional<OceanOrigin> origin = scenario.origin;
     field("origin", origin, what_origin);
     TransectTable transect{scenario.transect};
     field("transect", transect, "where the ocean's range axis lies on the map");
-    const Area* const area = scenario.area.get();
     describe_area(field, area != nullptr ? &area->settings() : nullptr);
     if (area != nullptr)
       OceanTable{area->everywhere(), true, area->water().has_value()}.describe(field);
@@ -176,21 +189,12 @@ void describe_environment(Fields& field, const Scenario& scenario) {
 
 void read_environment(TomlTable table, const std::filesystem::path& folder, double frequency,
                       Scenario& scenario) {
-  KnownSettings known;
-  TomlReader reader(table, known);
-  describe_wind(reader, scenario.wind_speed);
   scenario.transect = read_transect(table);
   scenario.origin = read_origin(table);
   OceanReading reading{.folder = folder, .frequency = frequency, .notes = scenario.notes};
   std::optional<AreaReading> area = read_area(table, reading, scenario.origin);
-  if (area) {
-    reading.area = &*area;
-    if (const auto wind = area->wind_speed(0.0, 0.0)) {
-      if (table.has("wind_speed"))
-        throw table.fault("wind_speed", "none beside [environment.area.wind], which says it");
-      scenario.wind_speed = *wind;
-    }
-  }
+  if (area) reading.area = &*area;
+  scenario.wind_speed = read_wind(table, reading.area);
   scenario.environment = read_ocean(table, reading);
   if (area) {
     scenario.area = area->build(scenario.environment);

@@ -23,6 +23,15 @@ void know_water(Fields& settings, const Scenario& scenario) {
                                                       : bottom.depth);
 }
 
+/// Noise is that of the wind over the first array, where a map of wind has it.
+void know_wind_of_arrays(Fields& settings, Scenario& scenario) {
+  if (!scenario.area || !scenario.area->wind()) return;
+  const Platform& platform = scenario.platforms[scenario.arrays[0].platform];
+  const Vec3& place = platform.track.start.position;
+  scenario.wind_speed = scenario.area->wind()->at(place.x(), place.y()).value;
+  settings.know("environment.wind_speed", scenario.wind_speed);
+}
+
 /// Where ranges and bearings of targets begin.
 void know_first_platform(Fields& settings, const Scenario& scenario) {
   const Vec3& place = scenario.platforms[0].track.start.position;
@@ -51,6 +60,9 @@ void set_scattered_elsewhere(Scenario& scenario) {
   };
   if (reverberation.surface_scatters) set(ocean.surface, reverberation.surface);
   if (reverberation.bottom) set(ocean.bottom, *reverberation.bottom);
+  if (scenario.area)
+    scenario.area = std::make_shared<const Area>(scenario.area->scattering(
+        ocean.surface.roughness.elsewhere, ocean.bottom.roughness.elsewhere));
 }
 
 }  // namespace
@@ -69,6 +81,7 @@ void describe_bodies(Fields& field, Scenario& scenario) {
         {.one_or_more = true, .named = "transmitter"});
   field("array", scenario.arrays, "of hydrophones", {.one_or_more = true, .named = "array"});
   if (field.reads()) place_towed(scenario);
+  know_wind_of_arrays(field, scenario);
   know_first_platform(field, scenario);
   field("target", scenario.targets, "what sends echoes", {.named = "target"});
   field("interferer", scenario.interferers, "ships that make noise", {.named = "interferer"});

@@ -290,11 +290,39 @@ void Area::put_water(const Vec2& place, double bearing, double reach, Environmen
   if (!alike) plane.section = SoundSpeedSection(ranges, levels, speeds);
 }
 
+void Area::put_waves(const Vec2& place, double bearing, double reach, Environment& plane) const {
+  Roughness& waves = plane.surface.roughness;
+  if (!maps_.wind || waves.smooth()) return;
+  const double step = maps_.wind->spacing(place.x(), place.y());
+  const auto steps = static_cast<int>(std::ceil(reach / step));
+  double wind = 0.0;  // the mean of the middles of steps
+  for (int i = 0; i < steps; ++i) {
+    const double r = (i + 0.5) * reach / steps;
+    const Vec2 there = place + r * Vec2(std::sin(bearing), std::cos(bearing));
+    wind += maps_.wind->at(there.x(), there.y()).value / steps;
+  }
+  // What was made of the wind at the map's [0, 0], and not given as a number, follows the wind.
+  const double at_origin = maps_.wind->at(0.0, 0.0).value;
+  if (waves.sea_wind == at_origin && waves.rms_height == pierson_moskowitz_height(at_origin)) {
+    waves.sea_wind = wind;
+    waves.rms_height = pierson_moskowitz_height(wind);
+  }
+  if (waves.bubble_wind == at_origin) waves.bubble_wind = wind;
+}
+
+Area Area::scattering(ScatteredElsewhere surface, ScatteredElsewhere bottom) const {
+  Area same = *this;
+  same.everywhere_.surface.roughness.elsewhere = std::move(surface);
+  same.everywhere_.bottom.roughness.elsewhere = std::move(bottom);
+  return same;
+}
+
 Environment Area::section(const Vec2& place, double bearing, double reach) const {
   Environment plane = everywhere_;
   reach = std::max(reach_on_map(place, bearing, reach), 10.0 * spacing(place));
   plane.bottom = floor_along(place, bearing, reach);
   put_water(place, bearing, reach, plane);
+  put_waves(place, bearing, reach, plane);
   return plane;
 }
 

@@ -51,6 +51,9 @@ class Area {
   /// coast ends there.
   [[nodiscard]] Environment section(const Vec2& place, double bearing, double reach) const;
 
+  /// The same with what the scattering laws of its rough boundaries take elsewhere.
+  [[nodiscard]] Area scattering(ScatteredElsewhere surface, ScatteredElsewhere bottom) const;
+
   /// How far floor and water go on from a place along a bearing, to `most` m [m].
   [[nodiscard]] double reach_on_map(const Vec2& place, double bearing, double most) const;
   /// The nearest end of any of the maps, within `most` m of a place; `most` itself: there is none.
@@ -77,6 +80,7 @@ class Area {
 
  private:
   [[nodiscard]] Boundary floor_along(const Vec2& place, double bearing, double reach) const;
+  void put_waves(const Vec2& place, double bearing, double reach, Environment& plane) const;
   void put_water(const Vec2& place, double bearing, double reach, Environment& plane) const;
 
   Maps maps_;

@@ -244,18 +244,24 @@ std::string beyond_the_map(const Scenario& scenario, double heard) {
 std::string wind_elsewhere(const Scenario& scenario) {
   if (!scenario.area || !scenario.area->wind()) return "";
   constexpr double felt = 1.0;  // [m/s]
+  const std::vector<Transmission> sent = transmissions(scenario);
   double worst = 0.0;
-  for (const Platform& platform : scenario.platforms) {
-    const Vec3 place = platform.track.at(0.0).position;
-    const double wind = scenario.area->wind()->at(place.x(), place.y()).value;
-    if (std::abs(wind - scenario.wind_speed) > std::abs(worst)) worst = wind - scenario.wind_speed;
-  }
+  std::string where;
+  for (const ReceiverArray& array : scenario.arrays)
+    for (const double time : {sent.front().time, sent.back().time}) {
+      const Vec3 place = scenario.platforms[array.platform].track.at(time).position;
+      const double other =
+          scenario.area->wind()->at(place.x(), place.y()).value - scenario.wind_speed;
+      if (std::abs(other) <= std::abs(worst)) continue;
+      worst = other;
+      where = scenario.platforms[array.platform].name;
+    }
   if (std::abs(worst) < felt) return "";
-  char text[200];
+  char text[240];
   std::snprintf(text, sizeof text,
-                "environment.area.wind: noise and roughness are those of %.3g m/s at the map's "
-                "[0, 0]; at a platform it is %.3g m/s",
-                scenario.wind_speed, scenario.wind_speed + worst);
+                "environment.area.wind: noise is that of %.3g m/s, over the first array when the "
+                "scenario starts; over platform %.40s it comes to be %.3g m/s",
+                scenario.wind_speed, where.c_str(), scenario.wind_speed + worst);
   return text;
 }
 

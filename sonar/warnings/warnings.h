@@ -38,7 +38,7 @@ namespace checks {
 [[nodiscard]] std::string beyond_the_map(const Scenario& scenario);
 /// The same of sound that is followed to a distance from the platforms [m].
 [[nodiscard]] std::string beyond_the_map(const Scenario& scenario, double distance);
-/// Noise and roughness of another wind than that over a platform.
+/// Noise of another wind than that over an array.
 [[nodiscard]] std::string wind_elsewhere(const Scenario& scenario);
 /// Places where an area's map, or the bounds that rays in three dimensions take of it, do not hold.
 [[nodiscard]] std::string far_from_the_origin(const Scenario& scenario);

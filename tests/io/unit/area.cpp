@@ -24,6 +24,10 @@ std::vector<double> even(double begin, double step, std::size_t n) {
   return values;
 }
 
+/// Metres in a degree of latitude and of longitude at 40 N, M·π/180 and N·cos φ·π/180 on the
+/// ellipsoid of a = 6378137 m, 1/f = 298.257223563.
+constexpr double of_latitude = 111'034.6326, of_longitude = 85'393.8570;
+
 /// Heights as GEBCO stores them, but from north to south: −1000 m and 2 m deeper with every place
 /// to the east, 5 m with every one to the north, from 20.3 W 39.7 N on.
 void write_heights(const std::filesystem::path& path) {
@@ -115,11 +119,10 @@ class AreaFiles : public testing::Test {
 TEST_F(AreaFiles, HeightsAreDepthsAtTheirPlaces) {
   const Scenario s = read(place + layered + sonar);
   ASSERT_TRUE(s.area);
-  const double degree = MapFrame::earth_radius * radians(1.0);
   const MapValue here = s.area->floor().at(0.0, 0.0);
   EXPECT_NEAR(here.value, 1420.0, 1e-6);
-  EXPECT_NEAR(here.x, 2.0 / (0.005 * degree * std::cos(radians(40.0))), 1e-7);
-  EXPECT_NEAR(here.y, 5.0 / (0.005 * degree), 1e-7);
+  EXPECT_NEAR(here.x, 2.0 / (0.005 * of_longitude), 1e-7);
+  EXPECT_NEAR(here.y, 5.0 / (0.005 * of_latitude), 1e-7);
   EXPECT_EQ(s.area->settings().origin, (GeographicPlace{40.0, -20.0}));
   EXPECT_NEAR(s.environment.bottom.depth_at(1000.0), s.area->bottom_depth(0.0, 1000.0), 0.05);
   EXPECT_EQ(s.environment.water.at(10.0).c, 1500.0);
@@ -154,6 +157,11 @@ kind = "rigid"
 
 TEST_F(AreaFiles, WhatIsWrittenIsReadAgain) {
   const Scenario s = read(place + R"(
+[environment.surface]
+kind = "vacuum"
+roughness = "wind"
+[environment.area.wind]
+file = "others.nc"
 [environment.area.sound_speed]
 file = "others.nc"
 [environment.area.seabed]
@@ -182,8 +190,7 @@ TEST_F(AreaFiles, FaultsAreToldByTheirNames) {
             "[environment.area.bathymetry]\nfile = \"heights.nc\"\n"),
       testing::AllOf(HasSubstr("[environment.origin]"), HasSubstr("heights.nc: elevation")));
   EXPECT_THAT(fault(place + "variable = \"tide\"\n" + layered + sonar),
-              testing::AllOf(HasSubstr("heights.nc"), HasSubstr("no variable of bathymetry"),
-                             HasSubstr("tide")));
+              testing::AllOf(HasSubstr("heights.nc"), HasSubstr("tide")));
   std::string elsewhere = place;
   elsewhere.replace(elsewhere.find("40.0"), 4, "45.0");
   EXPECT_THAT(fault(elsewhere + layered + sonar), HasSubstr("heights.nc: elevation"));
@@ -197,6 +204,35 @@ variable = "sediment"
                     "[[target]]\nposition = [0.0, 90000.0, 50.0]\n"
                     "strength_db = 10.0\n"),
               testing::AllOf(HasSubstr("target"), HasSubstr("a place on the map")));
+}
+
+// Wind grows by 4 m/s with every degree to the north. Noise is that of the wind over the array, a
+// plane is as rough as the mean wind along it makes the sea, and what is given as a number stays.
+TEST_F(AreaFiles, NoiseAndRoughnessAreThoseOfTheWindWhereTheyAre) {
+  const std::string wind = "[environment.area.wind]\nfile = \"others.nc\"\n";
+  const std::string rough =
+      "[environment.surface]\nkind = \"vacuum\"\nroughness = \"wind\"\nbubbles = \"apl-uw\"\n";
+  const std::string north =
+      std::string(sonar).replace(sonar.find("[0.0, 0.0, 100.0]"), 17, "[0.0, 20e3, 100.0]");
+  const Scenario s = read(place + wind + rough + layered + north + "[noise]\nkind = \"wenz\"\n");
+  constexpr double a_metre = 4.0 / of_latitude;
+  EXPECT_NEAR(s.wind_speed, 11.0 + 20e3 * a_metre, 1e-5);
+  EXPECT_NEAR(std::get<WenzNoise>(*s.noise.law).wind_speed, s.wind_speed, 1e-12);
+  const auto roughness = [](const Scenario& of, double bearing) {
+    return of.area->section(Vec2::Zero(), bearing, 30e3).surface.roughness;
+  };
+  for (const double bearing : {0.0, 1.0, pi / 2.0, pi}) {
+    const double mean = 11.0 + 15e3 * a_metre * std::cos(bearing);
+    EXPECT_NEAR(roughness(s, bearing).sea_wind, mean, 2e-3) << bearing;
+    EXPECT_NEAR(roughness(s, bearing).bubble_wind, mean, 2e-3) << bearing;
+    EXPECT_NEAR(roughness(s, bearing).rms_height, pierson_moskowitz_height(mean), 1e-3) << bearing;
+    EXPECT_FALSE(roughness(s, bearing).elsewhere.wavenumbers.empty());
+  }
+  const std::string numbers = std::string(rough).replace(rough.find("\"wind\""), 6, "0.5");
+  const Scenario given = read(place + wind + numbers + layered + sonar);
+  EXPECT_EQ(roughness(given, 0.0).rms_height, 0.5);
+  EXPECT_THAT(fault(place + wind + layered + sonar + "[environment]\nwind_speed = 5.0\n"),
+              HasSubstr("none beside [environment.area.wind]"));
 }
 
 // Kilometres, knots and km/s become our units; others, and grain sizes, are refused by name.
