@@ -54,6 +54,10 @@ void PingReport::add(const PingRecord& record) {
   band_error_ = std::max(band_error_, record.band.error);
   plane_wave_error_ = std::max(plane_wave_error_, record.plane_waves.error);
   bounces_.include(record.bounces);
+  reuse_.planes_searched += record.reuse.planes_searched;
+  reuse_.planes_reused += record.reuse.planes_reused;
+  reuse_.legs_searched += record.reuse.legs_searched;
+  reuse_.legs_reused += record.reuse.legs_reused;
   const Timings& t = record.timings;
   total_.rays += t.rays;
   total_.eigenrays += t.eigenrays;
@@ -103,6 +107,11 @@ std::string PingReport::text(double wall) const {
           "of a sweep the paths that add up here come apart in a matched filter, each by itself "
           "weaker: asdic process says which of them it detects\n";
   }
+  if (varies_with_range(scenario_.environment) || scenario_.area)
+    result += fmt::format(
+        "planes: reverberation searched {} and reused {}; eigenrays: echoes searched {} and reused "
+        "{}\n",
+        reuse_.planes_searched, reuse_.planes_reused, reuse_.legs_searched, reuse_.legs_reused);
   result += fmt::format(
       "time: {} in all; over the pings: surface paths {}, eigenrays {}, patches {}, synthesis {}, "
       "noise {}, writing {}\n",

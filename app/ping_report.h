@@ -31,6 +31,7 @@ class PingReport {
   double plane_wave_error_ = 0.0;  // of reverberation [periods]
   int pings_ = 0, lines_ = 0, left_out_ = 0;
   Timings total_;
+  Reuse reuse_;  // sums
 };
 
 }  // namespace asdic::detail::app

@@ -31,7 +31,7 @@ std::string closing_text(const Kinematics& from, const Kinematics& to) {
                      std::abs(opening));
 }
 
-std::string reverberation_text(const Scenario& s, double spacing) {
+std::string reverberation_text(const Scenario& s, double spacing, int planes) {
   const ReverberationSettings& r = s.reverberation;
   std::string text =
       r.enabled && r.surface_scatters
@@ -40,6 +40,9 @@ std::string reverberation_text(const Scenario& s, double spacing) {
                         spacing)
           : "surface reverberation  none\n";
   if (!r.enabled) return text;
+  if (s.area)
+    text += fmt::format("                       followed in {} vertical planes about a place\n",
+                        planes);
   if (r.bottom) text += fmt::format("bottom reverberation   {}\n", name_of(*r.bottom));
   for (const VolumeLayer& layer : r.volume)
     text += fmt::format("volume reverberation   {:g} dB re 1/m from {:g} to {:g} m\n",
@@ -213,7 +216,7 @@ std::string sonar_text(const PingSimulator& simulator) {
                         count_of(ship.tonals.size(), "tonal"));
   }
   text += noise_text(simulator);
-  text += reverberation_text(s, simulator.ground_spacing());
+  text += reverberation_text(s, simulator.ground_spacing(), simulator.reverberation_planes());
   return text;
 }
 

@@ -124,6 +124,8 @@ std::string ping_line(const ServedPing& served, const PingRecord& record,
   line["reused"] = {{"ocean", record.reuse.ocean},
                     {"legs", record.reuse.legs_reused},
                     {"legs_searched", record.reuse.legs_searched},
+                    {"planes", record.reuse.planes_reused},
+                    {"planes_searched", record.reuse.planes_searched},
                     {"reverberation", record.reuse.reverberation},
                     {"expected_level", record.reuse.expected_level}};
   line["timings"] = timings(record.timings, served.prepare);

@@ -76,6 +76,9 @@ void PingFileWriter::append(const PingRecord& record) {
   to.file.append<std::int8_t>("run/reuse_ocean", std::array{std::int8_t{reuse.ocean}});
   to.file.append<std::int32_t>("run/legs_searched", std::array{std::int32_t{reuse.legs_searched}});
   to.file.append<std::int32_t>("run/legs_reused", std::array{std::int32_t{reuse.legs_reused}});
+  to.file.append<std::int32_t>("run/planes_searched",
+                               std::array{std::int32_t{reuse.planes_searched}});
+  to.file.append<std::int32_t>("run/planes_reused", std::array{std::int32_t{reuse.planes_reused}});
   to.file.append<std::int8_t>("run/reuse_reverberation",
                               std::array{std::int8_t{reuse.reverberation}});
   to.file.append<std::int8_t>("run/reuse_expected_level",

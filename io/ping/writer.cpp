@@ -34,6 +34,9 @@ void PingFileWriter::Impl::create_ping_datasets() {
   growing<std::int8_t>("run/reuse_ocean", "1 if another simulator had used an equal ocean", "");
   growing<std::int32_t>("run/legs_searched", "sets of eigenrays that were searched for", "");
   growing<std::int32_t>("run/legs_reused", "sets of eigenrays that were known", "");
+  growing<std::int32_t>("run/planes_searched",
+                        "vertical planes in which paths to scatterers were searched for", "");
+  growing<std::int32_t>("run/planes_reused", "vertical planes of which they were known", "");
   growing<std::int8_t>("run/reuse_reverberation",
                        "1 if all paths to scattering boundaries were known", "");
   growing<std::int32_t>("run/band_points", "frequencies at which reverberation is known", "");

@@ -90,6 +90,7 @@ Transmitter PingSimulator::transmitter(int ping) const {
 }
 
 double PingSimulator::ground_spacing() const { return reverberation_->ground_spacing(); }
+int PingSimulator::reverberation_planes() const { return reverberation_->planes(); }
 
 PingRecord PingSimulator::blank_record(const PingGeometry& geometry) const {
   const Transmission& sent = geometry.sent();

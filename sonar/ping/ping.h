@@ -108,6 +108,8 @@ class PingSimulator {
   }
   [[nodiscard]] Transmitter transmitter(int ping) const;  ///< with the elevation of that ping
   [[nodiscard]] double ground_spacing() const;  ///< of the reverberation's ground grid [m]
+  /// Around a place, in which its paths are followed; 1: the same at every bearing.
+  [[nodiscard]] int reverberation_planes() const;
 
  private:
   [[nodiscard]] PingRecord blank_record(const PingGeometry& geometry) const;

@@ -247,7 +247,10 @@ void ReverberationFields::meet(ScatteringPart part, const ReverberationContext& 
   const auto fan_around = [&](const Vec3& place) {
     bool known = false;
     auto paths_to_level = fans_.around(place, part.level, fan, &known);
-    if (context.reuse != nullptr && !known) context.reuse->reverberation = false;
+    if (context.reuse != nullptr) {
+      context.reuse->count_planes(static_cast<int>(paths_to_level->planes.size()), known);
+      if (!known) context.reuse->reverberation = false;
+    }
     return paths_to_level;
   };
   const auto out = fan_around(ends.source.position), back = fan_around(ends.receiver.position);

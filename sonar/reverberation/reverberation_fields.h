@@ -34,6 +34,8 @@ class ReverberationFields {
                                                        const ReverberationContext& context) const;
   [[nodiscard]] double ground_spacing() const noexcept { return spacing_; }  ///< [m]
   [[nodiscard]] std::vector<ScatteringPart> parts() const;
+  /// Vertical planes around a place: as many as settings and the grid of an area ask for.
+  [[nodiscard]] int planes(double reach) const;
 
  private:
   /// Whether nothing tells where in the world a part of the sea lies: each ping has weights of its
@@ -54,8 +56,6 @@ class ReverberationFields {
   /// Of a ring: as many as are resolved, but no more scatterers in all rings than twice the most
   /// returns, and no fewer sectors than the scenario says. \param reach  of the rings [m]
   [[nodiscard]] int sectors(double reach) const;
-  /// Vertical planes around a place: as many as settings and the grid of an area ask for.
-  [[nodiscard]] int planes(double reach) const;
 
   const Scenario& scenario_;
   const PropagationPaths& paths_;

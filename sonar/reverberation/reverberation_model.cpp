@@ -5,6 +5,8 @@
 
 #include "reverb/power/reverberation_streams.h"
 #include "sonar/reverberation/reverberation_covariance.h"
+#include "sonar/scenario/ping_bounds.h"
+#include "sonar/scenario/sampling.h"
 #include "sonar/signal/pulse_coherence.h"
 
 namespace asdic::detail {
@@ -12,6 +14,12 @@ namespace asdic::detail {
 ReverberationModel::ReverberationModel(const Scenario& scenario, const PropagationPaths& paths,
                                        const Pulse& widest)
     : scenario_(scenario), paths_(paths), fields_(scenario, paths, widest) {}
+
+int ReverberationModel::planes() const {
+  return paths_.layered()
+             ? 1
+             : fields_.planes(0.5 * fastest_water(scenario_) * end_of_record(scenario_));
+}
 
 std::vector<ScatteringSheet::Law> ReverberationModel::laws() const {
   std::vector<ScatteringSheet::Law> found;

@@ -24,6 +24,8 @@ class ReverberationModel {
   void take_memory(const ReverberationContext& context) const;
   /// Of the rings of scatterers [m].
   [[nodiscard]] double ground_spacing() const noexcept { return fields_.ground_spacing(); }
+  /// Vertical planes around a place in which a record's reverberation is followed.
+  [[nodiscard]] int planes() const;
   /// Of everything that scatters.
   [[nodiscard]] std::vector<ScatteringSheet::Law> laws() const;
   /// That a ping's paths follow, the most of all boundaries and layers.

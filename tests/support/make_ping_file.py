@@ -219,8 +219,8 @@ def write_levels_and_rays(f, s, result):
                      library_versions="none")
     for name in ("rays", "eigenrays", "patches", "synthesis", "noise", "write"):
         put(run, f"time_{name}", np.zeros(s.pings), f"wall time of {name}", "s", (f["ping"],))
-    for name in ("reuse_ocean", "legs_searched", "legs_reused", "reuse_reverberation",
-                 "reuse_expected_level", "band_points", "band_error",
+    for name in ("reuse_ocean", "legs_searched", "legs_reused", "planes_searched",
+                 "planes_reused", "reuse_reverberation", "reuse_expected_level", "band_points", "band_error",
                  "surface_bounces", "bottom_bounces"):
         put(run, name, np.zeros(s.pings), "what was known", None, (f["ping"],), np.int32)
     put(run, "left_out_db", np.zeros(s.pings), "of the level", "dB", (f["ping"],))
