@@ -109,8 +109,8 @@ std::string PingReport::text(double wall) const {
   }
   if (varies_with_range(scenario_.environment) || scenario_.area)
     result += fmt::format(
-        "planes: reverberation searched {} and reused {}; eigenrays: echoes searched {} and reused "
-        "{}\n",
+        "after preparing: planes of reverberation searched {}, reused {}; eigenrays of echoes "
+        "searched {}, reused {}\n",
         reuse_.planes_searched, reuse_.planes_reused, reuse_.legs_searched, reuse_.legs_reused);
   result += fmt::format(
       "time: {} in all; over the pings: surface paths {}, eigenrays {}, patches {}, synthesis {}, "
