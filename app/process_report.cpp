@@ -178,6 +178,8 @@ std::string process_json(const ProcessedRun& run, const Scenario& scenario,
   for (std::size_t k = 0; k < run.tracks.size(); ++k) {
     const ProcessedTrack& t = run.tracks[k];
     const TrackPoint& last = t.track.points.back();
+    const GeographicPlace there = t.has_bearing ? run.earth.at(last.position.x(), last.position.y())
+                                                : EarthPlaces().at(0.0, 0.0);
     tracks.push_back(
         {{"track", k + 1},
          {"side", t.ambiguous ? (t.side == 0 ? "right" : "left") : "only"},
@@ -187,6 +189,8 @@ std::string process_json(const ProcessedRun& run, const Scenario& scenario,
          {"x_m", value(t.has_bearing ? last.position.x() : std::nan(""))},
          {"y_m", value(t.has_bearing ? last.position.y() : std::nan(""))},
          {"range_m", value(t.has_bearing ? std::nan("") : last.position.y())},
+         {"latitude_deg", value(there.latitude)},
+         {"longitude_deg", value(there.longitude)},
          {"target", t.target < 0
                         ? ordered_json(nullptr)
                         : ordered_json(scenario.targets[static_cast<std::size_t>(t.target)].name)},

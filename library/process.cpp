@@ -135,7 +135,7 @@ detail::ProcessingSettings settings_of(const Receiving& asked,
   return s;
 }
 
-Detection shown(const detail::Detection& found, int owner) {
+Detection shown(const detail::Detection& found, int owner, const detail::EarthPlaces& earth) {
   Detection result{.ping = found.ping,
                    .array = found.array,
                    .time = found.time,
@@ -146,25 +146,34 @@ Detection shown(const detail::Detection& found, int owner) {
                    .excess_db = found.excess_db,
                    .level_db = found.level_db,
                    .target = owner};
-  for (const detail::Location& place : found.locations)
+  for (const detail::Location& place : found.locations) {
+    const auto there = std::isnan(place.bearing) ? detail::EarthPlaces().at(0.0, 0.0)
+                                                 : earth.at(place.position.x(), place.position.y());
     result.places.push_back(
         {.position = {place.position.x(), place.position.y(), place.position.z()},
          .range = place.range,
          .bearing = place.bearing,
-         .range_rate = place.range_rate});
+         .range_rate = place.range_rate,
+         .latitude_deg = there.latitude,
+         .longitude_deg = there.longitude});
+  }
   return result;
 }
 
-Track shown(const detail::ProcessedTrack& made) {
+Track shown(const detail::ProcessedTrack& made, const detail::EarthPlaces& earth) {
   Track result{.array = made.array, .ambiguous = made.ambiguous, .target = made.target};
   for (std::size_t i = 0; i < made.track.points.size(); ++i) {
     const detail::TrackPoint& point = made.track.points[i];
+    const auto there = made.has_bearing ? earth.at(point.position.x(), point.position.y())
+                                        : detail::EarthPlaces().at(0.0, 0.0);
     result.points.push_back({.ping = point.ping,
                              .detection = made.rows[i],
                              .time = point.time,
                              .position = {point.position.x(), point.position.y()},
                              .velocity = {point.velocity.x(), point.velocity.y()},
-                             .position_sigma = point.position_sigma});
+                             .position_sigma = point.position_sigma,
+                             .latitude_deg = there.latitude,
+                             .longitude_deg = there.longitude});
   }
   return result;
 }
@@ -179,11 +188,13 @@ Processed processed(const detail::ReceivedPings& pings, std::vector<detail::Repl
         if (watch.progress) watch.progress(done, static_cast<int>(pings.pings()));
       },
       [&] { return !watch.stop.stop_requested(); });
-  Processed result{.warnings = run.warnings};
+  Processed result{.warnings = run.warnings, .on_earth = run.earth.known()};
   for (const detail::ProcessedPing& ping : run.pings)
     for (std::size_t i = 0; i < ping.array.result.detections.size(); ++i)
-      result.detections.push_back(shown(ping.array.result.detections[i], ping.score.owner[i]));
-  for (const detail::ProcessedTrack& track : run.tracks) result.tracks.push_back(shown(track));
+      result.detections.push_back(
+          shown(ping.array.result.detections[i], ping.score.owner[i], run.earth));
+  for (const detail::ProcessedTrack& track : run.tracks)
+    result.tracks.push_back(shown(track, run.earth));
   return result;
 }
 

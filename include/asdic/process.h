@@ -16,6 +16,7 @@
 
 #include <array>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -49,6 +50,9 @@ struct Place {
   double range = 0.0;       ///< horizontal, from the array when it received it [m]
   double bearing = 0.0;     ///< true; NaN if the array tells none [rad]
   double range_rate = 0.0;  ///< [m/s]
+  /// On the Earth; NaN unless the scenario says where its map is (environment.origin) [degrees].
+  double latitude_deg = std::numeric_limits<double>::quiet_NaN();
+  double longitude_deg = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// One thing that is no background.
@@ -74,6 +78,9 @@ struct TrackPoint {
   std::array<double, 2> position{};  ///< east, north [m]
   std::array<double, 2> velocity{};  ///< east, north [m/s]
   double position_sigma = 0.0;       ///< [m]
+  /// On the Earth, as in Place [degrees].
+  double latitude_deg = std::numeric_limits<double>::quiet_NaN();
+  double longitude_deg = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// What is believed to be one thing over several pings.
@@ -88,6 +95,7 @@ struct Processed {
   std::vector<Detection> detections{};
   std::vector<Track> tracks{};          ///< of two pings or more
   std::vector<std::string> warnings{};  ///< what to know before trusting it
+  bool on_earth = false;                ///< whether places have latitudes and longitudes
 };
 
 /// All pings of a file. The file stays as it is. \throws InputError, RunError

@@ -28,6 +28,8 @@ inline constexpr Meaning sea_floor{.standard_name = "sea_floor_depth_below_mean_
 [[nodiscard]] constexpr Meaning of_boundary(std::string_view side) noexcept {
   return side == "bottom" ? sea_floor : Meaning{};
 }
+inline constexpr Meaning latitude{.standard_name = "latitude"};
+inline constexpr Meaning longitude{.standard_name = "longitude"};
 inline constexpr Meaning sound_speed{.standard_name = "speed_of_sound_in_sea_water"};
 inline constexpr Meaning pressure{.standard_name = "sound_pressure_in_water"};
 /// Of a mean square. CF's levels in water are re 1 µPa.

@@ -38,7 +38,7 @@ void write_line(Hdf5File& file, const std::string& side, const RayPaths::Line& l
 }  // namespace
 
 void write_root(Hdf5File& file, const Scenario& scenario, const Provenance& provenance) {
-  write_filetype(file, "asdic ping", "3.1");
+  write_filetype(file, "asdic ping", "3.2");
   file.set_attribute("", "title", scenario.title);
   file.set_attribute("", "program_version", provenance.program_version);
   file.set_attribute("", "build", provenance.build);

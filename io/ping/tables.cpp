@@ -24,8 +24,8 @@ std::vector<GrowingTable::Column> echo_columns() {
       {"arrival_bearing_deg", "of travel at the array, true (clockwise from north)", "degree"}};
 }
 
-std::vector<GrowingTable::Column> patch_columns() {
-  return {
+std::vector<GrowingTable::Column> patch_columns(bool on_earth) {
+  std::vector<GrowingTable::Column> columns = {
       {"ping", "number of the ping", "", Type::int32},
       {"boundary", "0 surface, 1 bottom, 2 volume", "", Type::int8},
       {"bearing_deg", "of the sector, true (clockwise from north); NaN: the whole ring", "degree"},
@@ -43,6 +43,12 @@ std::vector<GrowingTable::Column> patch_columns() {
        {.reference = "1 of a boundary, 1/m of the volume"}},
       {"level_db", "expected, of that area, pulse not windowed", "dB", Type::float64,
        cf::pressure_level}};
+  if (!on_earth) return columns;
+  columns.push_back({"latitude", "latitude of the cell's centre; NaN: the whole ring",
+                     "degrees_north", Type::float64, cf::latitude});
+  columns.push_back({"longitude", "longitude of the cell's centre; NaN: the whole ring",
+                     "degrees_east", Type::float64, cf::longitude});
+  return columns;
 }
 
 std::vector<GrowingTable::Column> interference_columns() {

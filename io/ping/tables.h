@@ -7,7 +7,8 @@
 namespace asdic::detail::ping_file {
 
 [[nodiscard]] std::vector<GrowingTable::Column> echo_columns();
-[[nodiscard]] std::vector<GrowingTable::Column> patch_columns();
+/// \param on_earth  whether latitudes and longitudes are known
+[[nodiscard]] std::vector<GrowingTable::Column> patch_columns(bool on_earth);
 [[nodiscard]] std::vector<GrowingTable::Column> interference_columns();
 
 }  // namespace asdic::detail::ping_file

@@ -172,26 +172,19 @@ void PingFileWriter::Impl::append_pressure(const PingRecord& record) {
 
 void PingFileWriter::Impl::create_places(const PlaceNames& names, const std::string& whose,
                                          const std::vector<std::string>& scales, const Shape& row) {
-  if (!scenario.origin) return;
-  growing<double>(names.latitude, "of the " + whose + " at the start of the ping", "degrees_north",
-                  scales, row, {.standard_name = "latitude"});
-  growing<double>(names.longitude, "of the " + whose + " at the start of the ping", "degrees_east",
-                  scales, row, {.standard_name = "longitude"});
+  if (!earth.known()) return;
+  growing<double>(names.latitude, "latitude of the " + whose + " at the start of the ping",
+                  "degrees_north", scales, row, cf::latitude);
+  growing<double>(names.longitude, "longitude of the " + whose + " at the start of the ping",
+                  "degrees_east", scales, row, cf::longitude);
 }
 
 void PingFileWriter::Impl::append_places(const PlaceNames& names,
-                                         const std::vector<Vec3>& positions) {
-  if (!scenario.origin) return;
-  const MapFrame frame = MapFrame::geographic(
-      {degrees(scenario.origin->latitude), degrees(scenario.origin->longitude)});
-  std::vector<double> latitude, longitude;
-  for (const Vec3& position : positions) {
-    const MapFrame::OnGrid place = frame.on_grid(position.x(), position.y());
-    latitude.push_back(place.v);
-    longitude.push_back(place.u);
-  }
-  file.append<double>(names.latitude, latitude);
-  file.append<double>(names.longitude, longitude);
+                                         const std::vector<Vec2>& positions) {
+  if (!earth.known()) return;
+  const LatitudesLongitudes all = on_earth(earth, positions);
+  file.append<double>(names.latitude, all.latitude);
+  file.append<double>(names.longitude, all.longitude);
 }
 
 void PingFileWriter::Impl::append_geometry(const PingRecord& record) {
@@ -199,7 +192,7 @@ void PingFileWriter::Impl::append_geometry(const PingRecord& record) {
   file.append<double>("ping_time", std::array{record.start_time});
   file.append<double>("elevation_deg", std::array{degrees(record.elevation)});
   file.append<double>("platform_position", flat(record.platform.position));
-  append_places({"platform_latitude", "platform_longitude"}, {record.platform.position});
+  append_places({"platform_latitude", "platform_longitude"}, {record.platform.position.head<2>()});
   file.append<double>("platform_velocity", flat(record.platform.velocity));
   std::vector<double> phones;
   for (const Vec3& phone : record.phones)
@@ -216,8 +209,8 @@ void PingFileWriter::Impl::append_geometry(const PingRecord& record) {
     present.push_back(record.ping >= target.first_ping && record.ping <= target.last_ping ? 1 : 0);
   }
   file.append<double>("target_position", position);
-  std::vector<Vec3> places;
-  for (const auto& target : record.targets) places.push_back(target.position);
+  std::vector<Vec2> places;
+  for (const auto& target : record.targets) places.emplace_back(target.position.head<2>());
   append_places({"target_latitude", "target_longitude"}, places);
   file.append<double>("target_velocity", velocity);
   file.append<double>("target_strength_db", strength);
@@ -239,10 +232,23 @@ void PingFileWriter::Impl::append_tables(const PingRecord& record) {
   every = std::max(every, step);
   for (std::size_t i = 0; i < record.patches.size(); i += std::max<std::size_t>(1, step)) {
     const PatchRow& p = record.patches[i];
-    patches.row({double(record.ping), static_cast<double>(p.ground), compass_degrees(p.bearing),
-                 p.range, p.area, p.delay, degrees(p.grazing_in), degrees(p.grazing_out),
-                 degrees(p.launch_elevation), degrees(p.arrival_elevation),
-                 p.scattering_strength_db, p.level_db});
+    std::vector<double> row{double(record.ping),
+                            static_cast<double>(p.ground),
+                            compass_degrees(p.bearing),
+                            p.range,
+                            p.area,
+                            p.delay,
+                            degrees(p.grazing_in),
+                            degrees(p.grazing_out),
+                            degrees(p.launch_elevation),
+                            degrees(p.arrival_elevation),
+                            p.scattering_strength_db,
+                            p.level_db};
+    if (earth.known()) {
+      const GeographicPlace there = earth.at(p.place.x(), p.place.y());
+      row.insert(row.end(), {there.latitude, there.longitude});
+    }
+    patches.row(row);
   }
   for (const ReceivedPath& p : record.interference)
     interference->row({double(record.ping), double(p.interferer), double(p.array), p.delay,

@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 
+#include "io/hdf5/earth.h"
 #include "io/hdf5/scale.h"
 #include "io/ping/arrival_table.h"
 #include "io/ping/growing_table.h"
@@ -16,6 +17,7 @@ struct PingFileWriter::Impl {
   OutputFile output;
   Hdf5File file;
   Scenario scenario;
+  EarthPlaces earth;
   bool times_written_out = false, long_arrays = false;
   std::size_t pings = 0;
   bool finished = false;
@@ -30,11 +32,12 @@ struct PingFileWriter::Impl {
       : output(std::move(to)),
         file(Hdf5File::create(output.part())),
         scenario(s),
+        earth(s.origin, s.area.get()),
         times_written_out(times == SampleTimes::written_out),
         long_arrays(has_long_arrays(s)),
         arrivals(file),
         echoes(file, "echoes", "echo", ping_file::echo_columns()),
-        patches(file, "patches", "patch", ping_file::patch_columns()) {
+        patches(file, "patches", "patch", ping_file::patch_columns(earth.known())) {
     if (scenario.interferers.empty()) return;
     interference.emplace(file, "interference", "received_path", ping_file::interference_columns());
     std::string names;
@@ -63,7 +66,7 @@ struct PingFileWriter::Impl {
   };
   void create_places(const PlaceNames& names, const std::string& whose,
                      const std::vector<std::string>& scales, const Shape& row);
-  void append_places(const PlaceNames& names, const std::vector<Vec3>& positions);
+  void append_places(const PlaceNames& names, const std::vector<Vec2>& positions);
   void append_geometry(const PingRecord& record);
   void append_tables(const PingRecord& record);
   void append_summary(const PingRecord& record);

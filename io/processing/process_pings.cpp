@@ -148,6 +148,7 @@ ProcessedRun process_pings(const ReceivedPings& recordings, const PingProcessor&
                            const std::function<bool()>& proceed) {
   ProcessedRun run;
   run.warnings = recordings.scenario().notes;
+  run.earth = EarthPlaces(recordings.scenario().origin, recordings.scenario().area.get());
   const std::size_t first = ping ? recordings.row_of(*ping) : 0;
   const std::size_t end = ping ? first + 1 : recordings.pings();
   const int arrays = static_cast<int>(recordings.scenario().arrays.size());

@@ -7,6 +7,7 @@
 #include "processing/ping_processor.h"
 #include "processing/scoring.h"
 #include "processing/tracker.h"
+#include "raytrace/area/earth_places.h"
 
 namespace asdic::detail {
 
@@ -39,6 +40,7 @@ struct ProcessedRun {
   std::vector<std::string> options;   ///< "name=value" of what was asked for
   std::vector<std::string> warnings;  ///< what is to be known before it is trusted
   std::string program_version;
+  EarthPlaces earth{};  ///< of the scenario's map
   bool maps = true;
 };
 

@@ -29,6 +29,27 @@ std::vector<GrowingTable::Column> place_columns(const std::string& prefix,
           {prefix + "bottom_bounces", "there and back" + side, "", Type::int32}};
 }
 
+/// Of places on the Earth, the last columns where they are known.
+void add_earth_columns(std::vector<GrowingTable::Column>& columns, const std::string& prefix,
+                       const std::string& what) {
+  columns.push_back(
+      {prefix + "latitude", "latitude " + what, "degrees_north", Type::float64, cf::latitude});
+  columns.push_back(
+      {prefix + "longitude", "longitude " + what, "degrees_east", Type::float64, cf::longitude});
+}
+
+void add_earth_place(std::vector<double>& row, const EarthPlaces& earth, double x, double y) {
+  const GeographicPlace there = earth.at(x, y);
+  row.insert(row.end(), {there.latitude, there.longitude});
+}
+
+void add_earth_place(std::vector<double>& row, const EarthPlaces& earth, const Detection& d,
+                     std::size_t side) {
+  const bool known = d.locations.size() > side && !std::isnan(d.locations[side].bearing);
+  add_earth_place(row, earth, known ? d.locations[side].position.x() : none,
+                  known ? d.locations[side].position.y() : none);
+}
+
 void add_place(std::vector<double>& row, const Detection& d, std::size_t side) {
   if (d.locations.size() <= side) {
     row.insert(row.end(), {none, none, none, none, none, none, none, -1.0, -1.0});
@@ -64,6 +85,10 @@ Table detections_table(const ProcessedRun& run) {
       {"places", "that fit it: 2 where two sides cannot be resolved", "", Type::int32}};
   for (const auto& columns : {place_columns("", ""), place_columns("mirror_", ", the other side")})
     table.columns.insert(table.columns.end(), columns.begin(), columns.end());
+  if (run.earth.known()) {
+    add_earth_columns(table.columns, "", "of where it was struck");
+    add_earth_columns(table.columns, "mirror_", "of where it was struck, the other side");
+  }
   for (const ProcessedPing& ping : run.pings)
     for (std::size_t i = 0; i < ping.array.result.detections.size(); ++i) {
       const Detection& d = ping.array.result.detections[i];
@@ -82,6 +107,8 @@ Table detections_table(const ProcessedRun& run) {
                               double(d.locations.size())};
       add_place(row, d, 0);
       add_place(row, d, 1);
+      if (run.earth.known())
+        for (const std::size_t side : {0U, 1U}) add_earth_place(row, run.earth, d, side);
       table.rows.push_back(std::move(row));
     }
   return table;
@@ -106,6 +133,7 @@ Table tracks_table(const ProcessedRun& run) {
                    {"velocity_sigma", "root of the trace of its covariance", "m/s"},
                    {"target", "that most of its detections are of, -1: none", "", Type::int32},
                    {"error", "from that target: distance, or of the range alone", "m"}};
+  if (run.earth.known()) add_earth_columns(table.columns, "", "of the track");
   for (std::size_t k = 0; k < run.tracks.size(); ++k) {
     const ProcessedTrack& t = run.tracks[k];
     for (std::size_t i = 0; i < t.track.points.size(); ++i) {
@@ -117,6 +145,9 @@ Table tracks_table(const ProcessedRun& run) {
                             place ? p.velocity.x() : none, place ? p.velocity.y() : none,
                             place ? none : p.position.y(), place ? none : p.velocity.y(),
                             p.position_sigma, p.velocity_sigma, double(t.target), t.error[i]});
+      if (run.earth.known())
+        add_earth_place(table.rows.back(), run.earth, place ? p.position.x() : none,
+                        place ? p.position.y() : none);
     }
   }
   return table;

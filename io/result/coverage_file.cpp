@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "io/hdf5/earth.h"
 #include "io/hdf5/scale.h"
 #include "io/result/scene_file.h"
 
@@ -72,6 +73,29 @@ CoverageSummary::Layer summed(double depth, const std::vector<double>& ranges, s
   return layer;
 }
 
+/// Latitudes and longitudes of the cells' middles, and of the ends, where they are known.
+void write_earth(Hdf5File& file, const EarthPlaces& earth, const Coverage& found) {
+  if (!earth.known()) return;
+  std::vector<Vec2> middles;
+  for (const double bearing : found.bearings)
+    for (const double range : found.ranges)
+      middles.emplace_back(found.receiver.x() + range * std::sin(bearing),
+                           found.receiver.y() + range * std::cos(bearing));
+  write_on_earth(file, earth, "", "of a cell's middle", middles,
+                 {found.bearings.size(), found.ranges.size()}, {"bearing", "range"});
+  for (const auto& [name, place] :
+       {std::pair{"source_position", found.source}, std::pair{"array_position", found.receiver}}) {
+    const GeographicPlace there = earth.at(place.x(), place.y());
+    file.set_attribute(name, "latitude_deg", there.latitude);
+    file.set_attribute(name, "longitude_deg", there.longitude);
+  }
+}
+
+/// CF's word for where the values of a dataset are.
+void place_on_earth(Hdf5File& file, const EarthPlaces& earth, const std::string& dataset) {
+  if (earth.known()) file.set_attribute(dataset, "coordinates", "latitude longitude");
+}
+
 }  // namespace
 
 void write_coverage(Hdf5File& file, const Coverage& found, const Scenario& scenario) {
@@ -112,6 +136,8 @@ void write_coverage(Hdf5File& file, const Coverage& found, const Scenario& scena
     describe(file, name, meaning, "m");
     file.attach_scales(name, {"xyz"});
   }
+  const EarthPlaces earth(scenario.origin, scenario.area.get());
+  write_earth(file, earth, found);
   const Shape shape = {depths.size(), bearings.size(), found.ranges.size()};
   const std::vector<std::string> scales = {"depth", "bearing", "range"};
   for (const Column& column : columns) {
@@ -121,6 +147,7 @@ void write_coverage(Hdf5File& file, const Coverage& found, const Scenario& scena
     file.write<float>(column.name, all, shape);
     describe(file, column.name, column.meaning, column.unit, column.cf);
     file.attach_scales(column.name, scales);
+    place_on_earth(file, earth, column.name);
   }
   std::vector<std::int8_t> certainty;
   for (const CoverageLayer& layer : found.layers)
@@ -132,9 +159,11 @@ void write_coverage(Hdf5File& file, const Coverage& found, const Scenario& scena
       "no_water: the depth is below the sea floor");
   file.set_attribute("certainty", "flag_meanings", "sure no_path edge no_water");
   file.attach_scales("certainty", scales);
+  place_on_earth(file, earth, "certainty");
   file.write<float>("bottom_depth", found.bottom_depth, {bearings.size(), found.ranges.size()});
   describe(file, "bottom_depth", "depth of the sea floor, positive down", "m", cf::sea_floor);
   file.attach_scales("bottom_depth", {"bearing", "range"});
+  place_on_earth(file, earth, "bottom_depth");
   write_tracks(file, scenario);
 }
 

@@ -12,7 +12,7 @@ namespace asdic::detail {
 using PropagationFile = std::variant<bellhop::ShadeFile, bellhop::ArrivalsFile, bellhop::RayFile>;
 
 /// Of docs/formats/field.md, arrivals.md and rays.md, in HDF5.
-inline constexpr const char* result_version = "1.3";
+inline constexpr const char* result_version = "1.4";
 
 /// "field", "arrivals" or "rays".
 [[nodiscard]] std::string_view kind_of(const PropagationFile& file) noexcept;

@@ -6,6 +6,7 @@
 
 #include "core/geometry.h"
 #include "io/files/digest.h"
+#include "io/hdf5/earth.h"
 #include "io/hdf5/environment_group.h"
 #include "io/hdf5/scale.h"
 #include "raytrace/ocean/slice.h"
@@ -24,7 +25,8 @@ double end_of(const PingSchedule& pings) {
 /// Tables of points: names, and [things, instants, 3] where they are.
 class Tracks {
  public:
-  Tracks(Hdf5File& file, double end) : file_(file), end_(end) {
+  Tracks(Hdf5File& file, double end, const EarthPlaces& earth)
+      : file_(file), end_(end), earth_(earth) {
     std::vector<double> times;
     for (int k = 0; k < instants; ++k) times.push_back(end * k / (instants - 1));
     write_scale(file, "instant", "instant", times, "time since the start of the scenario", "s");
@@ -36,10 +38,12 @@ class Tracks {
   void write(const std::string& group, const std::vector<std::string>& names,
              const PlaceAt& place_at) {
     std::vector<double> places;
+    std::vector<Vec2> on_map;
     for (std::size_t i = 0; i < names.size(); ++i)
       for (int k = 0; k < instants; ++k) {
         const Vec3 place = place_at(i, end_ * k / (instants - 1));
         places.insert(places.end(), {place.x(), place.y(), place.z()});
+        on_map.emplace_back(place.head<2>());
       }
     const std::string name = group + "/track";
     file_.make_group(group);
@@ -51,11 +55,14 @@ class Tracks {
     std::iota(numbers.begin(), numbers.end(), 0);
     write_scale(file_, group + "/thing", "thing", numbers, "number of the thing, from 0");
     file_.attach_scales(name, {group + "/thing", "instant", "xyz"});
+    write_on_earth(file_, earth_, group + "/", "of the track", on_map,
+                   {names.size(), std::size_t{instants}}, {group + "/thing", "instant"});
   }
 
  private:
   Hdf5File& file_;
   double end_;
+  EarthPlaces earth_;
 };
 
 template <class Things>
@@ -96,7 +103,7 @@ void write_phones(Hdf5File& file, const Scenario& scenario) {
 }  // namespace
 
 void write_tracks(Hdf5File& file, const Scenario& scenario) {
-  Tracks tracks(file, end_of(scenario.pings));
+  Tracks tracks(file, end_of(scenario.pings), {scenario.origin, scenario.area.get()});
   tracks.write("platforms", names_of(scenario.platforms), [&](std::size_t i, double time) -> Vec3 {
     return scenario.platforms[i].track.at(time).position;
   });

@@ -16,7 +16,8 @@ void write_scene(const std::filesystem::path& path, const Scenario& scenario);
 void write_scene(const std::filesystem::path& path, const PropagationCase& run);
 
 /// Where platforms, transmitters, arrays and targets are: groups of these names, each with `names`
-/// and `track` [things, instants, 3], until the last record ends.
+/// and `track` [things, instants, 3], until the last record ends; with `latitude` and `longitude`
+/// [things, instants] where they are known.
 void write_tracks(Hdf5File& file, const Scenario& scenario);
 
 }  // namespace asdic::detail

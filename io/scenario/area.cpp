@@ -144,6 +144,11 @@ AreaReading::AreaReading(TomlTable table, const OceanReading& reading,
       open(settings_.bathymetry, climatology::bathymetry_quantity(), "bathymetry", false);
   floor_.emplace(floor.grid, frame(floor), settings_.interpolation, floor.depth_sign,
                  MapOrigin{floor.name}, settings_.water_level);
+  if (origin && !floor.geographic)
+    reading_.notes.push_back("environment.area: " + floor.name +
+                             " is on projected axes, which may be turned against the meridian: "
+                             "results have no latitudes and longitudes but those of "
+                             "environment.origin");
   if (!floor_->covers(0.0, 0.0))
     throw table_.fault("bathymetry", "a map that holds the scenario's [0, 0]", floor.name);
   if (settings_.sound_speed) {

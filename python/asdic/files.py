@@ -106,7 +106,8 @@ def _read(path: str, load: bool):
     if timed:
         variables["time"] = xr.Variable(*datasets.times(told, whole.sizes["sample"]))
     coords = {name: value for name, value in variables.items()
-              if value.dims == (name,) or (name, value.dims) == ("time", ("sample",))}
+              if value.dims == (name,) or (name, value.dims) == ("time", ("sample",))
+              or name in ("latitude", "longitude") and name in whole.coords}
     found = xr.Dataset({n: v for n, v in variables.items() if n not in coords}, coords, attrs)
     found.encoding["source"] = path
     return found

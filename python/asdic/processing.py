@@ -21,7 +21,9 @@ OPTIONS: dict[str, Any] = {
 
 UNITS = {"time": "s", "bearing_deg": "degrees", "elevation_deg": "degrees", "snr_db": "dB",
          "excess_db": "dB", "level_db": "dB re 1 µPa", "east": "m", "north": "m", "depth": "m",
-         "range": "m", "range_rate": "m/s"}
+         "range": "m", "range_rate": "m/s", "latitude": "degrees", "longitude": "degrees",
+         "velocity_east": "m/s", "velocity_north": "m/s", "position_sigma": "m"}
+EARTH = ("latitude", "longitude")
 
 
 @dataclass
@@ -35,10 +37,12 @@ class Processed:
         level_db, target (-1 a false alarm, -2 the direct sound, -3 another ping).
     places : pandas.DataFrame
         Where a detection may be: detection, east, north, depth [m] when it was struck, range [m],
-        bearing_deg, range_rate [m/s]. Two rows where left and right look alike, none where no path
+        bearing_deg, range_rate [m/s]; of a scenario with ``environment.origin`` latitude and
+        longitude [degrees], too. Two rows where left and right look alike, none where no path
         fits.
     tracks : list of dict
-        array, ambiguous, target and ``points``, a pandas.DataFrame.
+        array, ambiguous, target and ``points``, a pandas.DataFrame, with latitude and longitude
+        likewise.
     warnings : list of str
 
     The units of a table's columns are its ``attrs["units"]``.
@@ -86,13 +90,18 @@ def process(source, progress=None, **options) -> Processed:
         found = _core.process_pings([_handle(one) for one in pings], given, progress)
     places = [{"detection": i, "east": p["position"][0], "north": p["position"][1],
                "depth": p["position"][2], "range": p["range"], "bearing_deg": p["bearing_deg"],
-               "range_rate": p["range_rate"]}
+               "range_rate": p["range_rate"], **{name: p[name] for name in EARTH}}
               for i, several in enumerate(found["places"]) for p in several]
     columns = ["detection", "east", "north", "depth", "range", "bearing_deg", "range_rate"]
+    if found["on_earth"]:
+        columns += EARTH
     tracks = [{**track, "points": pd.DataFrame(track["points"])} for track in found["tracks"]]
+    if not found["on_earth"]:
+        for track in tracks:
+            track["points"] = track["points"].drop(columns=list(EARTH))
     tell(found["warnings"])
     detections, where = pd.DataFrame(found["detections"]), pd.DataFrame(places, columns=columns)
-    for table in (detections, where):
+    for table in (detections, where, *(track["points"] for track in tracks)):
         table.attrs["units"] = {name: UNITS[name] for name in table.columns if name in UNITS}
     return Processed(detections, where, tracks, found["warnings"])
 

@@ -48,6 +48,7 @@ class Area:
     uncertainty: np.ndarray     # [d, b, r] [dB]
     bottom: np.ndarray          # [b, r] [m]
     about: str                  # who listens to whom
+    middle: str                 # "the array", and where on the Earth it is
     tracks: dict = field(default_factory=dict)   # "platforms", "targets" → (names, [n, instants, 3])
     tags: dict = field(default_factory=dict)
 
@@ -82,9 +83,11 @@ def read(path) -> Area:
         about = (f"{results.text(attributes, 'array')} hears {results.text(attributes, 'transmitter')}"
                  f", {reader.number('frequency_hz'):g} Hz, target of "
                  f"{reader.number('target_strength_db'):.3g} dB")
+        place = style.on_earth(reader.file["array_position"].attrs)
+        middle = f"the array ({place})" if place else "the array"
         return Area(reader.title(), depth, bearing, span, reader.array("array_position"),
                     reader.array("source_position"), values, values["certainty"],
-                    values["uncertainty_db"], reader.array("bottom_depth"), about, tracks,
+                    values["uncertainty_db"], reader.array("bottom_depth"), about, middle, tracks,
                     reader.tags())
 
 
@@ -130,7 +133,7 @@ def frame(axes, area: Area) -> None:
     axes.set_aspect("equal", anchor="W")
     axes.set_xlim(-1.04 * far, 1.04 * far)
     axes.set_ylim(-1.04 * far, 1.04 * far)
-    axes.set_xlabel("east of the array / km")
+    axes.set_xlabel(f"east of {area.middle} / km")
     axes.set_ylabel("north of the array / km")
     for ring in axes.get_xticks():
         if 0.0 < ring <= far:

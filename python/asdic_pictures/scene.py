@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from . import results, source
+from . import results, source, style
 from .data import InputError
 
 KIND = "asdic scene"
@@ -34,6 +34,7 @@ class Scene:
     phones: list                        # [array] → [n, 3] from its middle [m]
     source_depth: np.ndarray            # of a run without a sonar [m]
     receivers: tuple                    # depths, ranges [m], whether they are one by one
+    origin: str = ""                    # of the map: where on the Earth it is
     tags: dict = field(default_factory=dict)
 
     @property
@@ -73,4 +74,5 @@ def read(path) -> Scene:
                      numbers("transmitters/elevation_deg"), numbers("transmitters/beamwidth_deg"),
                      phones, numbers("source_depth"),
                      (numbers("receiver_depth"), numbers("receiver_range"),
-                      bool(reader.number("irregular", 0.0))), reader.tags())
+                      bool(reader.number("irregular", 0.0))),
+                     style.on_earth(reader.file.attrs), reader.tags())

@@ -64,7 +64,7 @@ def draw_map(axes, scene: Scene) -> None:
     axes.set_xlim(middle[0] - far, middle[0] + far)
     axes.set_ylim(middle[1] - far, middle[1] + far)
     axes.set_aspect("equal", adjustable="datalim")
-    axes.set_xlabel("east / km")
+    axes.set_xlabel(style.east_of(scene.origin))
     axes.set_ylabel("north / km")
     axes.grid(True)
     for side in axes.spines.values():

@@ -237,6 +237,22 @@ def name(text: str) -> str:
     return shorten(text, 28).lstrip("_") or "target"
 
 
+def on_earth(attributes) -> str:
+    """"33.7000° N, 63.0000° W" by the attributes latitude_deg and longitude_deg; "" without them."""
+    try:
+        north, east = (float(np.ravel(attributes[key])[0]) for key in ("latitude_deg", "longitude_deg"))
+    except (KeyError, IndexError, TypeError, ValueError):
+        return ""
+    east = (east + 180.0) % 360.0 - 180.0
+    return (f"{abs(north):.4f}° {'N' if north >= 0.0 else 'S'}, "
+            f"{abs(east):.4f}° {'E' if east >= 0.0 else 'W'}")
+
+
+def east_of(place: str) -> str:
+    """The label of a map's axis, with where its [0, 0] is, if that is known."""
+    return f"east of {place} / km" if place else "east / km"
+
+
 def degrees(angle: float) -> str:
     """−12.5°, with a real minus sign."""
     return f"{angle:+.6g}°".replace("-", "−") if angle else "0°"

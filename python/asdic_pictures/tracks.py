@@ -62,7 +62,7 @@ def draw_map(axes, data, tracks):
     axes.plot(own[:, 0] / 1e3, own[:, 1] / 1e3, color=style.INK, lw=1.0, marker="^", ms=5, zorder=6,
               markevery=[-1])
     axes.set_aspect("equal", adjustable="datalim")
-    axes.set_xlabel("east / km")
+    axes.set_xlabel(style.east_of(style.on_earth(data.file.attrs)))
     axes.set_ylabel("north / km")
 
 

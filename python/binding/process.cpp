@@ -36,8 +36,8 @@ py::dict shown(const Processed& all) {
     py::list of_it;
     for (const Place& p : d.places)
       of_it.append(py::dict("position"_a = p.position, "range"_a = p.range,
-                            "bearing_deg"_a = bearing_deg(p.bearing),
-                            "range_rate"_a = p.range_rate));
+                            "bearing_deg"_a = bearing_deg(p.bearing), "range_rate"_a = p.range_rate,
+                            "latitude"_a = p.latitude_deg, "longitude"_a = p.longitude_deg));
     places.append(of_it);
   }
   for (const Track& track : all.tracks) {
@@ -46,7 +46,8 @@ py::dict shown(const Processed& all) {
       points.append(py::dict("ping"_a = p.ping, "detection"_a = p.detection, "time"_a = p.time,
                              "east"_a = p.position[0], "north"_a = p.position[1],
                              "velocity_east"_a = p.velocity[0], "velocity_north"_a = p.velocity[1],
-                             "position_sigma"_a = p.position_sigma));
+                             "position_sigma"_a = p.position_sigma, "latitude"_a = p.latitude_deg,
+                             "longitude"_a = p.longitude_deg));
     tracks.append(py::dict("array"_a = track.array, "ambiguous"_a = track.ambiguous,
                            "target"_a = track.target, "points"_a = points));
   }
@@ -62,7 +63,8 @@ py::dict shown(const Processed& all) {
           "excess_db"_a = number([](const Detection& d) { return d.excess_db; }),
           "level_db"_a = number([](const Detection& d) { return d.level_db; }),
           "target"_a = whole([](const Detection& d) { return d.target; })),
-      "places"_a = places, "tracks"_a = tracks, "warnings"_a = all.warnings);
+      "places"_a = places, "tracks"_a = tracks, "warnings"_a = all.warnings,
+      "on_earth"_a = all.on_earth);
 }
 
 }  // namespace

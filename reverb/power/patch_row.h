@@ -1,4 +1,7 @@
 #pragma once
+#include <limits>
+
+#include "core/units.h"
 
 namespace asdic::detail {
 
@@ -9,11 +12,13 @@ struct PatchRow {
   Ground ground = Ground::surface;  ///< what scatters
   double bearing = 0.0;             ///< of the sector, clockwise from north [rad]; NaN: whole ring
   double range = 0.0;               ///< of the cell's centre from the source [m]
-  double area = 0.0;                ///< of the ring, or of the sectors [m²]
-  double delay = 0.0;               ///< two-way [s]
-  double grazing_in = 0.0;          ///< [rad]
-  double grazing_out = 0.0;         ///< [rad]
-  double launch_elevation = 0.0;    ///< of the outgoing path [rad]
+  /// That centre on the map; NaN: whole ring [m].
+  Vec2 place = Vec2::Constant(std::numeric_limits<double>::quiet_NaN());
+  double area = 0.0;              ///< of the ring, or of the sectors [m²]
+  double delay = 0.0;             ///< two-way [s]
+  double grazing_in = 0.0;        ///< [rad]
+  double grazing_out = 0.0;       ///< [rad]
+  double launch_elevation = 0.0;  ///< of the outgoing path [rad]
   double arrival_elevation =
       0.0;  ///< of the returning path at the array, direction of travel [rad]
   double scattering_strength_db = 0.0;  ///< of that pair of angles [dB]

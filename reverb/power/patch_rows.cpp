@@ -11,23 +11,25 @@ PatchRows patch_rows(std::span<const ScatteringField> fields, const AudibleLimit
   const auto add = [&](const ScatteringField& field, std::uint32_t ring, int sector, double share,
                        std::vector<PatchRow>& rows) {
     const double ring_of = field.ring_area(ring);
-    field.sheet.pairs_at(field.centre(ring, sector), pairs, &limits, ring_of);
+    const bool ring_alone = field.azimuthally_symmetric();
+    const Vec2 centre = field.centre(ring, sector);
+    field.sheet.pairs_at(centre, pairs, &limits, ring_of);
     for (const PathPair& pair : pairs.found)
-      rows.push_back(
-          {.ground = field.thickness > 0.0 ? PatchRow::Ground::volume
-                     : field.boundary == 1 ? PatchRow::Ground::bottom
-                                           : PatchRow::Ground::surface,
-           .bearing = field.azimuthally_symmetric() ? std::nan("") : field.bearing(sector),
-           .range = (ring + 0.5) * field.grid.spacing,
-           .area = share * ring_of * pair.area,
-           .delay = pair.delay,
-           .grazing_in = pair.grazing_in,
-           .grazing_out = pair.grazing_out,
-           .launch_elevation = pair.out->launch_elevation,
-           .arrival_elevation = -pair.back->launch_elevation,
-           .scattering_strength_db = db_from_power(pair.cross_section),
-           .level_db = source_level_db +
-                       db_from_power(std::norm(pair.amplitude) * share * ring_of * pair.area)});
+      rows.push_back({.ground = field.thickness > 0.0 ? PatchRow::Ground::volume
+                                : field.boundary == 1 ? PatchRow::Ground::bottom
+                                                      : PatchRow::Ground::surface,
+                      .bearing = ring_alone ? std::nan("") : field.bearing(sector),
+                      .range = (ring + 0.5) * field.grid.spacing,
+                      .place = ring_alone ? Vec2::Constant(std::nan("")) : centre,
+                      .area = share * ring_of * pair.area,
+                      .delay = pair.delay,
+                      .grazing_in = pair.grazing_in,
+                      .grazing_out = pair.grazing_out,
+                      .launch_elevation = pair.out->launch_elevation,
+                      .arrival_elevation = -pair.back->launch_elevation,
+                      .scattering_strength_db = db_from_power(pair.cross_section),
+                      .level_db = source_level_db + db_from_power(std::norm(pair.amplitude) *
+                                                                  share * ring_of * pair.area)});
   };
   // Of a boundary whose sea is that of several anchors: the nearest one's rings tell all of it.
   const auto nearest_anchors = [&](const ScatteringField& field) {

@@ -163,6 +163,12 @@ by = [{{ axis = "range", edges = [500, 800, 1500] }}, "spectral_level_db", ["ran
 """
 
 
+ORIGIN = """[environment.origin]
+latitude_deg = 54.0
+longitude_deg = 7.5
+"""
+
+
 def sea(arrays=LINE, targets=ROCK, transmitters="", more=""):
     return SEA.format(arrays=arrays, targets=targets, transmitters=transmitters) + more
 
@@ -215,12 +221,12 @@ class Files:
                           "noise.spectral_level_db=-300"),
                 self.ping("several", several),
                 self.ping("continuous", several, "--set", "pings.continuous=true", "--set", "pings.recording_duration=5.0", "--set", "pings.interval=6.0"),
-                self.ping("slope", over_slope()),
+                self.ping("slope", over_slope() + ORIGIN),
                 self.ping("per_phone", sea(), "--set", "propagation.exact_per_phone=true")]
 
     def kind_processed(self):
         files = []
-        for name, text in (("p_line", sea()), ("p_several", sea(LINE + PHONE, transmitters=SECOND))):
+        for name, text in (("p_line", sea(more=ORIGIN)), ("p_several", sea(LINE + PHONE, transmitters=SECOND))):
             ping = self.ping(name, baseband(text))
             self.asdic("process", ping, "-o", f"{name}_done.h5", "--quiet", "--target-depth", "150m")
             self.asdic("process", ping, "-o", f"{name}_bare.h5", "--quiet", "--no-maps")
@@ -228,7 +234,7 @@ class Files:
         return files
 
     def kind_area(self):
-        (self.folder / "area.toml").write_text(sea())
+        (self.folder / "area.toml").write_text(sea(more=ORIGIN))
         self.asdic("area", "area.toml", "-o", "area.h5", "--quiet", "--depth", "50,120", "--reach",
                    "2km", "--bearings", "12", "--ranges", "20")
         return ["area.h5"]
@@ -316,9 +322,11 @@ class Files:
 # Of CF's table (https://cfconventions.org/standard-names.html), with the canonical unit.
 STANDARD_NAMES = {"depth": "m", "sea_floor_depth_below_mean_sea_level": "m",
                   "speed_of_sound_in_sea_water": "m/s", "sound_pressure_in_water": "Pa",
-                  "sound_pressure_level_in_water": "dB"}
+                  "sound_pressure_level_in_water": "dB", "latitude": "degrees_north",
+                  "longitude": "degrees_east"}
 # UDUNITS has no decibel; CF's own table uses it. Everything else UDUNITS reads.
-UNITS = {"1", "m", "m2", "m/s", "s", "Hz", "Pa", "Pa2", "degree", "degrees", "dB", "kg/m3", "degC"}
+UNITS = {"1", "m", "m2", "m/s", "s", "Hz", "Pa", "Pa2", "degree", "degrees", "dB", "kg/m3", "degC",
+         "degrees_north", "degrees_east"}
 INSIDE = {"CLASS", "NAME", "REFERENCE_LIST", "DIMENSION_LIST", "_Netcdf4Dimid",
           "_Netcdf4Coordinates", "_NCProperties", "_nc3_strict"}
 NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable"

@@ -8,6 +8,7 @@
 #include "io/scenario/scenario_reader.h"
 #include "io/scenario/writer.h"
 #include "io/settings/writer.h"
+#include "raytrace/area/earth_places.h"
 #include "support/netcdf_writer.h"
 #include "support/temporary_directory.h"
 
@@ -275,6 +276,24 @@ TEST_F(AreaFiles, DepthsAreKnownByTheirLongName) {
   }
   const std::string named = std::string(place).replace(place.find("heights.nc"), 10, "named.nc");
   EXPECT_NEAR(read(named + layered + sonar).area->bottom_depth(0.0, 0.0), 700.0, 1e-3);
+}
+
+// Axes of a projection may be turned against the meridian: no latitudes are made of them.
+TEST_F(AreaFiles, ProjectedMapsHaveNoPlacesOnTheEarth) {
+  {
+    NetcdfWriter file(folder_ / "plane.nc");
+    file.axis("y", even(-20.0, 5.0, 9), {{"units", "km"}, {"axis", "Y"}});
+    file.axis("x", even(-20.0, 5.0, 9), {{"units", "km"}, {"axis", "X"}});
+    file.variable("depth", NC_FLOAT, {"y", "x"}, std::vector<double>(81, 700.0), {{"units", "m"}});
+  }
+  const std::string plane = std::string(place).replace(place.find("heights.nc"), 10, "plane.nc");
+  const Scenario projected = read(plane + layered + sonar), placed = read(place + layered + sonar);
+  EXPECT_FALSE(EarthPlaces(projected.origin, projected.area.get()).known());
+  EXPECT_THAT(projected.notes,
+              testing::Contains(testing::AllOf(HasSubstr("plane.nc: depth"),
+                                               HasSubstr("results have no latitudes"))));
+  EXPECT_TRUE(EarthPlaces(placed.origin, placed.area.get()).known());
+  EXPECT_THAT(placed.notes, testing::Not(testing::Contains(HasSubstr("no latitudes"))));
 }
 
 // 10⁸ places: opened in kilobytes.
