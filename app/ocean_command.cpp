@@ -170,8 +170,7 @@ void add_ocean_command(Program& program) {
         add_force_option(command, options->force);
         command.footer(
             "A scenario takes it with include = \"FILE.toml\". Options of files may be repeated, "
-            "and name "
-            "a variable: FILE:VARIABLE.\n"
+            "and name a variable, or the band of a raster: FILE:VARIABLE, FILE:BAND.\n"
             "Example:  asdic ocean --latitude 30.5 --longitude -60.5 --month 3 -o ocean.toml");
         command.runs([options] { return ocean(*options); });
       });

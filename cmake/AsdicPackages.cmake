@@ -49,6 +49,10 @@ studies. One program serves every x86-64 processor from 2008 on.")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "python3, python3-numpy, python3-h5py, python3-matplotlib")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_CONTROL_EXTRA "${PROJECT_SOURCE_DIR}/cmake/packages/program/postinst;${PROJECT_SOURCE_DIR}/cmake/packages/program/prerm")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "asdic-mpi, python3-asdic, ferret-datasets")
+if(ASDIC_HAS_GDAL)
+  string(APPEND CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS ", ${ASDIC_GDAL_PACKAGE}")
+  set(CPACK_DEBIAN_LIBRARY_PACKAGE_SUGGESTS "${ASDIC_GDAL_PACKAGE}")
+endif()
 
 asdic_package(library ${library_package} "simulator of active sonars - shared library"
 "What the program asdic does, for programs in C++: scenarios, eigenrays,

@@ -49,7 +49,7 @@ struct MapAxes {
   std::string latitude, longitude;
 };
 
-void write_axes(Hdf5File& file, const MapAxes& axes, const NetcdfGrid::Block& grid) {
+void write_axes(Hdf5File& file, const MapAxes& axes, const DataGrid::Block& grid) {
   write_scale(file, axes.latitude, axes.latitude, grid.northings, "of the cells' middles",
               "degrees_north", {.standard_name = "latitude", .axis = "Y"});
   write_scale(file, axes.longitude, axes.longitude, grid.eastings, "of the cells' middles",
@@ -58,7 +58,7 @@ void write_axes(Hdf5File& file, const MapAxes& axes, const NetcdfGrid::Block& gr
 
 template <class T>
 void write_map(Hdf5File& file, const std::string& name, const std::vector<T>& values,
-               const NetcdfGrid::Block& grid, const MapAxes& axes, const std::string& long_name,
+               const DataGrid::Block& grid, const MapAxes& axes, const std::string& long_name,
                const std::string& units, const Meaning& meaning) {
   file.write<T>(name, values, {grid.northings.size(), grid.eastings.size()});
   describe(file, name, long_name, units, meaning);
@@ -70,7 +70,7 @@ std::vector<float> floats(const std::vector<double>& values) {
 }
 
 /// What the files do not reach of a box.
-void tell_reach(const NetcdfGrid::Block& grid, const Box& box, const Tiles& tiles, const char* what,
+void tell_reach(const DataGrid::Block& grid, const Box& box, const Tiles& tiles, const char* what,
                 const OceanRequest& request, std::vector<std::string>& notes) {
   if (grid.eastings.size() < 2 || grid.northings.size() < 2)
     throw InputError({.where = tiles.name_at(request.latitude, request.longitude),
@@ -178,7 +178,7 @@ void write_water(Hdf5File& file, const Water& water, const OceanRequest& request
 }
 
 void write_sediment(Hdf5File& file, const OceanSources& sources, const OceanRequest& request,
-                    const Box& box, const Floor& floor, const NetcdfGrid::Block& bathymetry,
+                    const Box& box, const Floor& floor, const DataGrid::Block& bathymetry,
                     const MapAxes& floor_axes, OceanArea& area) {
   std::set<int> numbers;
   std::vector<std::int8_t> classes;

@@ -43,9 +43,40 @@ std::optional<double> number_of_word(std::string_view word) {
   return value;
 }
 
+/// All of a grid's values, rows from north to south.
+class PlaneInMemory : public GridSource {
+ public:
+  PlaneInMemory(std::vector<double> x, std::vector<double> y, std::vector<double> values)
+      : columns_(x.size()), values_(std::move(values)) {
+    variable_.found = true;
+    variable_.name = "elevation";
+    variable_.units = "m";
+    variable_.dimensions = {
+        {.name = "y", .known = true, .axis = GridAxis::latitude, .values = std::move(y)},
+        {.name = "x", .known = true, .axis = GridAxis::longitude, .values = std::move(x)}};
+  }
+
+  const GridVariable& variable() const noexcept override { return variable_; }
+
+  std::vector<double> read(const GridPart& part) const override {
+    std::vector<double> some;
+    for (std::size_t j = part.start[0]; j < part.start[0] + part.count[0]; ++j) {
+      const auto begin =
+          values_.begin() + static_cast<std::ptrdiff_t>(j * columns_ + part.start[1]);
+      some.insert(some.end(), begin, begin + static_cast<std::ptrdiff_t>(part.count[1]));
+    }
+    return some;
+  }
+
+ private:
+  std::size_t columns_;
+  std::vector<double> values_;
+  GridVariable variable_;
+};
+
 }  // namespace
 
-std::optional<NetcdfGrid> read_ascii_grid(const std::filesystem::path& path) {
+std::optional<DataGrid> read_ascii_grid(const std::filesystem::path& path) {
   if (climatology::lower(InputFile(path, "a file of bathymetry").read(5)) != "ncols")
     return std::nullopt;
   note_read(path);
@@ -97,7 +128,8 @@ std::optional<NetcdfGrid> read_ascii_grid(const std::filesystem::path& path) {
                   std::to_string(n * m) + " numbers in all");
     value = *number == none ? std::numeric_limits<double>::quiet_NaN() : *number;
   }
-  return NetcdfGrid::of_plane(path, "elevation", std::move(x), std::move(y), std::move(values));
+  return DataGrid::of(
+      path, std::make_unique<const PlaneInMemory>(std::move(x), std::move(y), std::move(values)));
 }
 
 }  // namespace asdic::detail

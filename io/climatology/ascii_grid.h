@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "io/climatology/netcdf_grid.h"
+#include "io/climatology/data_grid.h"
 
 namespace asdic::detail {
 
@@ -12,6 +12,6 @@ namespace asdic::detail {
 /// \return nothing if the file does not begin so
 /// \throws InputError for a bad line, a projected grid, or one of more than 2.5e7 cells, which
 /// would fill the memory (netCDF is opened, not loaded)
-[[nodiscard]] std::optional<NetcdfGrid> read_ascii_grid(const std::filesystem::path& path);
+[[nodiscard]] std::optional<DataGrid> read_ascii_grid(const std::filesystem::path& path);
 
 }  // namespace asdic::detail

@@ -24,7 +24,7 @@ Floor::Floor(const std::vector<DataFile>& files, const OceanTime& when)
   sign_ = depth_sign(tiles_.first(), notes_);
 }
 
-double depth_sign(const NetcdfGrid& grid, std::vector<std::string>& notes) {
+double depth_sign(const DataGrid& grid, std::vector<std::string>& notes) {
   const std::string variable = lower(grid.variable()), standard = lower(grid.standard_name()),
                     about = lower(grid.long_name());
   const auto says = [&](const char* word) {

@@ -15,7 +15,7 @@ struct Place {
 
 /// What makes depths of a grid's values: +1 of depths, −1 of heights, by names, standard_name and
 /// long_name. \param notes  grows where nothing tells
-[[nodiscard]] double depth_sign(const NetcdfGrid& grid, std::vector<std::string>& notes);
+[[nodiscard]] double depth_sign(const DataGrid& grid, std::vector<std::string>& notes);
 
 /// Depth of the sea out of heights or depths, in tiles.
 class Floor {

@@ -7,8 +7,8 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "io/climatology/data_grid.h"
 #include "io/climatology/floor.h"
-#include "io/climatology/netcdf_grid.h"
 #include "io/climatology/words.h"
 
 namespace asdic::detail {
@@ -51,8 +51,9 @@ void cut_open(RisingAxis& axis, double longitude) {
 /// Reads windows out of a file, with more around them for what is filled.
 class WindowReader {
  public:
-  WindowReader(NetcdfGrid grid, climatology::UnitRule rule, RisingAxis x, RisingAxis y, bool volume)
-      : grid_(std::make_shared<const NetcdfGrid>(std::move(grid))),
+  WindowReader(std::shared_ptr<const DataGrid> grid, climatology::UnitRule rule, RisingAxis x,
+               RisingAxis y, bool volume)
+      : grid_(std::move(grid)),
         rule_(std::move(rule)),
         x_(std::move(x)),
         y_(std::move(y)),
@@ -93,9 +94,9 @@ class WindowReader {
             std::size_t rows, std::size_t columns, std::size_t levels,
             std::vector<float>& all) const {
     const auto span = [](std::size_t a, std::size_t b) {
-      return NetcdfGrid::Indices{std::min(a, b), std::max(a, b)};
+      return DataGrid::Indices{std::min(a, b), std::max(a, b)};
     };
-    const NetcdfGrid::Block block =
+    const DataGrid::Block block =
         grid_->block(span(x_.index[column + begin], x_.index[column + end - 1]),
                      span(y_.index[row], y_.index[row + rows - 1]), {0, levels - 1});
     for (std::size_t j = 0; j < rows; ++j)
@@ -105,7 +106,7 @@ class WindowReader {
               static_cast<float>(rule_.scale * block.at(i - begin, j, k) + rule_.offset);
   }
 
-  std::shared_ptr<const NetcdfGrid> grid_;
+  std::shared_ptr<const DataGrid> grid_;
   climatology::UnitRule rule_;
   RisingAxis x_, y_;
   bool volume_;
@@ -116,7 +117,9 @@ class WindowReader {
 OpenedMap open_map(const std::filesystem::path& path, const std::string& variable,
                    const climatology::GriddedQuantity& quantity, double longitude,
                    std::vector<std::string>& notes) {
-  NetcdfGrid grid = climatology::require_grid({path, variable}, quantity, true);
+  const auto file =
+      std::make_shared<const DataGrid>(climatology::require_grid({path, variable}, quantity, true));
+  const DataGrid& grid = *file;
   if (grid.times() > 1)
     throw InputError(
         {.where = path.string() + ": " + grid.variable(),
@@ -130,7 +133,8 @@ OpenedMap open_map(const std::filesystem::path& path, const std::string& variabl
   climatology::UnitRule rule = climatology::rule_of(grid, quantity, notes);
   OpenedMap opened{.depths = grid.depths(),
                    .geographic = grid.geographic(),
-                   .name = path.filename().string() + ": " + grid.variable()};
+                   .name = path.filename().string() + ": " + grid.variable(),
+                   .file = file};
   if (&quantity == &climatology::bathymetry_quantity())
     opened.depth_sign = climatology::depth_sign(grid, notes);
   RisingAxis x = rising(grid.eastings()), y = rising(grid.northings());
@@ -146,7 +150,7 @@ OpenedMap open_map(const std::filesystem::path& path, const std::string& variabl
   const bool volume = !grid.depths().empty();
   opened.grid = std::make_shared<const MapGrid>(
       std::move(east), std::move(north), levels,
-      WindowReader(std::move(grid), std::move(rule), std::move(x), std::move(y), volume));
+      WindowReader(file, std::move(rule), std::move(x), std::move(y), volume));
   return opened;
 }
 

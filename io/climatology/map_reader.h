@@ -5,19 +5,21 @@
 #include <string>
 #include <vector>
 
+#include "io/climatology/data_grid.h"
 #include "io/climatology/tiles.h"
 #include "raytrace/area/map_grid.h"
 
 namespace asdic::detail {
 
-/// A variable of a netCDF file as a map, or as a volume of maps: opened, and read tile by tile as
+/// A variable of a gridded file as a map, or as a volume of maps: opened, and read tile by tile as
 /// it is asked for.
 struct OpenedMap {
   std::shared_ptr<const MapGrid> grid;  ///< axes in [° east], [° north], or [m]; values in our unit
   std::vector<double> depths;           ///< of the levels [m]; empty: it is a map
   bool geographic = true;
-  std::string name;         ///< "place.nc: elevation", for messages
-  double depth_sign = 1.0;  ///< of bathymetry: what makes depths of its values
+  std::string name;                      ///< "place.nc: elevation", for messages
+  double depth_sign = 1.0;               ///< of bathymetry: what makes depths of its values
+  std::shared_ptr<const DataGrid> file;  ///< that it is read from
 };
 
 /// \param variable  "": one of the quantity's usual names

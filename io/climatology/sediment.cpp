@@ -119,7 +119,7 @@ const Sediment& sediment_at_depth(double depth) {
 
 SedimentMap::SedimentMap(const std::vector<DataFile>& files, const OceanTime& when)
     : tiles_(files, climatology::sediment_quantity(), when) {
-  const NetcdfGrid& grid = tiles_.first();
+  const DataGrid& grid = tiles_.first();
   const std::string name = lower(grid.variable() + " " + grid.standard_name() + " " +
                                  grid.long_name() + " " + grid.units());
   is_grain_size_ = grid.flag_meanings().empty() &&

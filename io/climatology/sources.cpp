@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "io/climatology/raster_source.h"
 #include "io/files/digest.h"
 
 namespace asdic::detail {
@@ -66,7 +67,8 @@ OceanSources or_default(OceanSources named, const OceanSources& otherwise) {
   return named;
 }
 
-std::string digest_of(const std::filesystem::path& path) {
+std::string digest_of(const std::filesystem::path& named) {
+  const std::filesystem::path path = raster_values(named);
   constexpr std::uintmax_t whole = std::uintmax_t{1} << 30;
   constexpr std::size_t piece = std::size_t{1} << 20;
   std::ifstream file(path, std::ios::binary);

@@ -40,7 +40,8 @@ struct OceanSources {
 [[nodiscard]] OceanSources or_default(OceanSources named, const OceanSources& otherwise);
 
 /// "sha256:…" of a file's bytes; of one above 1 GiB "sha256-ends:…" of its size as decimal digits
-/// and its first and last MiB, which tells versions apart without reading all of it.
+/// and its first and last MiB, which tells versions apart without reading all of it. Of a folder of
+/// ESRI's it is that of the file with the values.
 [[nodiscard]] std::string digest_of(const std::filesystem::path& path);
 
 namespace climatology {

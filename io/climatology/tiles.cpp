@@ -9,6 +9,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "io/climatology/ascii_grid.h"
+#include "io/climatology/raster_source.h"
 #include "io/climatology/words.h"
 #include "raytrace/area/map_frame.h"
 
@@ -114,9 +115,34 @@ std::vector<std::string> names_wanted(const DataFile& file, const GriddedQuantit
   return file.variable.empty() ? quantity.names : std::vector{file.variable};
 }
 
-std::optional<NetcdfGrid> find_grid(const DataFile& file, const GriddedQuantity& quantity) {
+/// Whether a band says that it is another quantity: "u10" is no wind speed.
+bool is_another(const DataGrid& grid, const GriddedQuantity& quantity) {
+  const auto called = [&](const GriddedQuantity& one) {
+    return std::any_of(one.names.begin(), one.names.end(), [&](const std::string& name) {
+      return lower(name) == lower(grid.long_name()) || lower(name) == lower(grid.standard_name());
+    });
+  };
+  const GriddedQuantity* const all[] = {&temperature_quantity(), &salinity_quantity(),
+                                        &sound_speed_quantity(), &bathymetry_quantity(),
+                                        &wind_speed_quantity(),  &eastward_wind_quantity(),
+                                        &sediment_quantity(),    &northward_wind_quantity()};
+  return !called(quantity) &&
+         std::any_of(std::begin(all), std::end(all), [&](const auto* one) { return called(*one); });
+}
+
+std::optional<DataGrid> find_grid(const DataFile& file, const GriddedQuantity& quantity,
+                                  bool required) {
+  if (raster_kind(file.path)) {
+    auto grid = DataGrid::of(file.path,
+                             open_raster(file.path, {.named = file.variable,
+                                                     .names = quantity.names,
+                                                     .colours = &quantity == &sediment_quantity(),
+                                                     .required = required}));
+    if (grid && file.variable.empty() && is_another(*grid, quantity)) return std::nullopt;
+    return grid;
+  }
   if (auto ascii = read_ascii_grid(file.path)) return ascii;
-  return NetcdfGrid::find(file.path, names_wanted(file, quantity));
+  return DataGrid::find(file.path, names_wanted(file, quantity));
 }
 
 double mean_step(const std::vector<double>& axis) {
@@ -141,14 +167,14 @@ double near_longitude(double longitude, double other) {
 
 }  // namespace
 
-NetcdfGrid require_grid(const DataFile& file, const GriddedQuantity& quantity, bool projected) {
+DataGrid require_grid(const DataFile& file, const GriddedQuantity& quantity, bool projected) {
   if (!std::filesystem::exists(file.path))
     throw InputError({.where = file.path.string(),
                       .got = "no such file",
                       .expected = "a netCDF file of " + quantity.name +
                                   " (install Debian's ferret-datasets: scripts/setup.sh "
                                   "--climatology, or name a file of your own)"});
-  auto grid = find_grid(file, quantity);
+  auto grid = find_grid(file, quantity, true);
   if (!grid) {
     std::string list;
     for (const std::string& name : quantity.names) list += (list.empty() ? "" : ", ") + name;
@@ -159,18 +185,24 @@ NetcdfGrid require_grid(const DataFile& file, const GriddedQuantity& quantity, b
          .expected = "one with the name or standard_name " + list + ", or FILE:VARIABLE"});
   }
   if (!grid->geographic() && !projected)
-    throw InputError({.where = file.path.string() + ": " + grid->variable(),
-                      .got = "a grid on projected x and y",
-                      .expected = "one on longitude and latitude"});
+    throw InputError(
+        {.where = file.path.string() + ": " + grid->variable(),
+         .got = "a grid on projected x and y" +
+                (grid->projection_name().empty() ? std::string() : ": " + grid->projection_name()),
+         .expected = grid->projection_name().empty()
+                         ? "one on longitude and latitude"
+                         : "one on longitude and latitude: \"gdalwarp -t_srs "
+                           "EPSG:4326 IN OUT\" makes it"});
   return std::move(*grid);
 }
 
-UnitRule rule_of(const NetcdfGrid& grid, const GriddedQuantity& quantity,
+UnitRule rule_of(const DataGrid& grid, const GriddedQuantity& quantity,
                  std::vector<std::string>& remarks) {
   std::string unit = lower(grid.units());
   unit.erase(0, unit.find_first_not_of(' '));
   unit.erase(unit.find_last_not_of(' ') + 1);
   const std::string where = grid.path().filename().string() + ": " + grid.variable();
+  remarks.insert(remarks.end(), grid.remarks().begin(), grid.remarks().end());
   if (unit.empty()) {
     if (quantity.name != "sediment")
       remarks.push_back(where + " has no units: taken as " + quantity.unit);
@@ -187,18 +219,18 @@ UnitRule rule_of(const NetcdfGrid& grid, const GriddedQuantity& quantity,
 
 bool has_quantity(const std::vector<DataFile>& files, const GriddedQuantity& quantity) {
   if (files.empty() || !std::filesystem::exists(files[0].path)) return true;
-  return find_grid(files[0], quantity).has_value();
+  return find_grid(files[0], quantity, false).has_value();
 }
 
 Tiles::Tiles(const std::vector<DataFile>& files, const GriddedQuantity& quantity,
              const OceanTime& when)
     : quantity_(quantity) {
   for (const DataFile& file : files) {
-    NetcdfGrid grid = require_grid(file, quantity);
+    DataGrid grid = require_grid(file, quantity);
     files_.push_back({file.path, grid.variable()});
     const UnitRule rule = rule_of(grid, quantity, remarks_);
     const auto same = std::find_if(tiles_.begin(), tiles_.end(), [&](const Tile& tile) {
-      const NetcdfGrid& other = tile.grids[0];
+      const DataGrid& other = tile.grids[0];
       return other.eastings() == grid.eastings() && other.northings() == grid.northings() &&
              other.depths() == grid.depths() && tile.rule.units == rule.units;
     });
@@ -344,12 +376,12 @@ double Tiles::nearest(double latitude, double longitude) const {
   return weighted_mean(steps);
 }
 
-NetcdfGrid::Block Tiles::read_block(const Tile& tile, NetcdfGrid::Indices east,
-                                    NetcdfGrid::Indices north, NetcdfGrid::Indices levels) const {
-  NetcdfGrid::Block sum;
+DataGrid::Block Tiles::read_block(const Tile& tile, DataGrid::Indices east, DataGrid::Indices north,
+                                  DataGrid::Indices levels) const {
+  DataGrid::Block sum;
   std::vector<double> weights;
   for (const auto& part : tile.time.parts) {
-    NetcdfGrid::Block one = tile.grids[part.file].block(east, north, levels, part.step);
+    DataGrid::Block one = tile.grids[part.file].block(east, north, levels, part.step);
     if (weights.empty()) {
       weights.assign(one.values.size(), 0.0);
       sum = one;
@@ -368,7 +400,7 @@ NetcdfGrid::Block Tiles::read_block(const Tile& tile, NetcdfGrid::Indices east,
   return sum;
 }
 
-std::vector<double> Tiles::read_column(const Tile& tile, NetcdfGrid::Point point) const {
+std::vector<double> Tiles::read_column(const Tile& tile, DataGrid::Point point) const {
   const std::size_t levels = std::max<std::size_t>(tile.grids[0].depths().size(), 1);
   return read_block(tile, {point.i, point.i}, {point.j, point.j}, {0, levels - 1}).values;
 }
@@ -384,7 +416,7 @@ std::optional<Tiles::Column> Tiles::column(double latitude, double longitude) co
   const auto here = where(latitude, longitude);
   if (!here) return std::nullopt;
   Column column{.tile = here->tile, .point = here->point};
-  const auto add = [&](const Tile& tile, NetcdfGrid::Point point) {
+  const auto add = [&](const Tile& tile, DataGrid::Point point) {
     const auto& depths = tile.grids[0].depths();
     const std::vector<double> values = read_column(tile, point);
     const double last = column.depths.empty() ? -1e30 : column.depths.back();
@@ -445,8 +477,8 @@ const TimeChoice& Tiles::time_at(double latitude, double longitude) const {
 
 const std::vector<double>& Tiles::levels() const { return first().depths(); }
 
-NetcdfGrid::Block Tiles::crop(double south, double north, double west, double east,
-                              bool values) const {
+DataGrid::Block Tiles::crop(double south, double north, double west, double east,
+                            bool values) const {
   const double mid_x = 0.5 * (west + east), mid_y = 0.5 * (south + north);
   const Tile* base = tile_at(mid_y, mid_x);
   if (base == nullptr) {
@@ -460,7 +492,7 @@ NetcdfGrid::Block Tiles::crop(double south, double north, double west, double ea
     return std::abs(steps - std::round(steps));
   };
   const auto alike = [&](const Tile& tile) {  // goes on with the lines of the base
-    const NetcdfGrid& grid = tile.grids[0];
+    const DataGrid& grid = tile.grids[0];
     return !tile.fault && tile.time.fit == base->time.fit &&
            std::abs(tile.step_north / dy - 1.0) < 0.01 &&
            std::abs(tile.step_east / dx - 1.0) < 0.01 &&
@@ -469,7 +501,7 @@ NetcdfGrid::Block Tiles::crop(double south, double north, double west, double ea
   };
   // Indices of an axis that lie in the box, as runs, and where they are.
   struct Run {
-    NetcdfGrid::Indices indices;
+    DataGrid::Indices indices;
   };
   const auto runs_of = [](const std::vector<double>& axis, double low, double high, double turn,
                           auto&& at) {
@@ -503,7 +535,7 @@ NetcdfGrid::Block Tiles::crop(double south, double north, double west, double ea
       for (std::size_t j = run.indices.first; j <= run.indices.last; ++j)
         ys.emplace(key_y(tile.grids[0].northings()[j]), tile.grids[0].northings()[j]);
   }
-  NetcdfGrid::Block all;
+  DataGrid::Block all;
   std::map<long, std::size_t> column_of, row_of;
   for (const auto& [k, x] : xs) {
     column_of[k] = all.eastings.size();

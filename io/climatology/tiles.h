@@ -34,10 +34,10 @@ struct GriddedQuantity {
 
 /// A variable of a gridded file. \param projected  whether x and y will do in place of longitude
 /// and latitude \throws InputError for a missing file or variable
-[[nodiscard]] NetcdfGrid require_grid(const DataFile& file, const GriddedQuantity& quantity,
-                                      bool projected = false);
+[[nodiscard]] DataGrid require_grid(const DataFile& file, const GriddedQuantity& quantity,
+                                    bool projected = false);
 /// How its units become ours. \param remarks  grows where it has none \throws InputError for others
-[[nodiscard]] UnitRule rule_of(const NetcdfGrid& grid, const GriddedQuantity& quantity,
+[[nodiscard]] UnitRule rule_of(const DataGrid& grid, const GriddedQuantity& quantity,
                                std::vector<std::string>& remarks);
 
 /// Whether the first of these files is gridded and has such a variable; so also for a missing file,
@@ -68,13 +68,13 @@ class Tiles {
     std::vector<double> depths{}, values{};  ///< [levels]
     std::string continued{};                 ///< a note, if deeper levels are another file's
     std::size_t tile = 0;                    ///< with the point: columns of the same are the same
-    NetcdfGrid::Point point{};
+    DataGrid::Point point{};
   };
   [[nodiscard]] std::optional<Column> column(double latitude, double longitude) const;
   /// The tile and point whose column() that is, without reading it.
   struct Where {
     std::size_t tile;
-    NetcdfGrid::Point point;
+    DataGrid::Point point;
     bool operator==(const Where&) const = default;
   };
   [[nodiscard]] std::optional<Where> where(double latitude, double longitude) const;
@@ -101,17 +101,17 @@ class Tiles {
   /// What was averaged or interpolated in time there.
   [[nodiscard]] const TimeChoice& time_at(double latitude, double longitude) const;
   [[nodiscard]] const std::vector<DataFile>& files() const { return files_; }  ///< with variables
-  [[nodiscard]] const NetcdfGrid& first() const { return tiles_.front().grids.front(); }
+  [[nodiscard]] const DataGrid& first() const { return tiles_.front().grids.front(); }
   [[nodiscard]] const std::vector<double>& levels() const;  ///< of the first tile
 
   /// All that lies in a box of degrees (and one point around it), of its finest tiles, joined, in
   /// the grid's own resolution; the uppermost level of a volume. \param values  else the axes alone
-  [[nodiscard]] NetcdfGrid::Block crop(double south, double north, double west, double east,
-                                       bool values = true) const;
+  [[nodiscard]] DataGrid::Block crop(double south, double north, double west, double east,
+                                     bool values = true) const;
 
  private:
   struct Tile {
-    std::vector<NetcdfGrid> grids{};  ///< on the same axes
+    std::vector<DataGrid> grids{};  ///< on the same axes
     TimeChoice time{};
     std::optional<InputFault> fault{};         ///< why it has no such time
     double step_east = 0.0, step_north = 0.0;  ///< [°]
@@ -119,10 +119,9 @@ class Tiles {
   };
   [[nodiscard]] bool holds(const Tile& tile, double latitude, double longitude) const;
   [[nodiscard]] const Tile* tile_at(double latitude, double longitude) const;
-  [[nodiscard]] std::vector<double> read_column(const Tile& tile, NetcdfGrid::Point point) const;
-  [[nodiscard]] NetcdfGrid::Block read_block(const Tile& tile, NetcdfGrid::Indices east,
-                                             NetcdfGrid::Indices north,
-                                             NetcdfGrid::Indices levels) const;
+  [[nodiscard]] std::vector<double> read_column(const Tile& tile, DataGrid::Point point) const;
+  [[nodiscard]] DataGrid::Block read_block(const Tile& tile, DataGrid::Indices east,
+                                           DataGrid::Indices north, DataGrid::Indices levels) const;
 
   GriddedQuantity quantity_;
   std::vector<DataFile> files_;

@@ -37,10 +37,10 @@ double day_in_year(Calendar calendar, const Moment& moment) {
   return (days(calendar, moment) - begin) / (end - begin) * days_of_year;
 }
 
-std::vector<Step> steps_of(const std::vector<NetcdfGrid>& files) {
+std::vector<Step> steps_of(const std::vector<DataGrid>& files) {
   std::vector<Step> steps;
   for (std::size_t f = 0; f < files.size(); ++f) {
-    const NetcdfGrid& grid = files[f];
+    const DataGrid& grid = files[f];
     for (std::size_t t = 0; t < grid.moments().size(); ++t) {
       Step step{.file = f, .step = t, .at = grid.moments()[t], .every_year = grid.every_year()};
       step.days = days(grid.calendar(), step.at);
@@ -64,7 +64,7 @@ std::vector<Step> steps_of(const std::vector<NetcdfGrid>& files) {
   return steps;
 }
 
-std::string names_of(const std::vector<NetcdfGrid>& files) {
+std::string names_of(const std::vector<DataGrid>& files) {
   const std::string first = files[0].path().string() + ": " + files[0].variable();
   return files.size() == 1 ? first : first + " and " + count_of(files.size() - 1, "file") + " more";
 }
@@ -91,7 +91,7 @@ std::string times_of(const std::vector<Step>& steps) {
   return text;
 }
 
-InputError no_such_time(const std::vector<NetcdfGrid>& files, const std::vector<Step>& steps,
+InputError no_such_time(const std::vector<DataGrid>& files, const std::vector<Step>& steps,
                         const OceanTime& when) {
   return InputError({.where = names_of(files),
                      .got = times_of(steps),
@@ -128,8 +128,7 @@ std::optional<TimeChoice> wider(const std::vector<Step>& steps, int month) {
   return std::nullopt;
 }
 
-TimeChoice of_month(const std::vector<NetcdfGrid>& files, const std::vector<Step>& steps,
-                    int month) {
+TimeChoice of_month(const std::vector<DataGrid>& files, const std::vector<Step>& steps, int month) {
   const auto narrow = those(steps, [&](const Step& s) {
     return !is_season(s) && !is_whole_year(s) && s.at.month == month;
   });
@@ -146,7 +145,7 @@ TimeChoice between(const Step& before, const Step& after, double share, const st
 }
 
 /// Of a climatology: in the year.
-TimeChoice in_the_year(const std::vector<NetcdfGrid>& files, std::vector<Step> steps,
+TimeChoice in_the_year(const std::vector<DataGrid>& files, std::vector<Step> steps,
                        const Moment& date) {
   const double day = day_in_year(Calendar::standard, date);
   auto narrow = those(steps, [](const Step& s) { return !is_season(s) && !is_whole_year(s); });
@@ -176,7 +175,7 @@ TimeChoice in_the_year(const std::vector<NetcdfGrid>& files, std::vector<Step> s
   return mean_of({nearest}, 0, "of month " + std::to_string(nearest.at.month));
 }
 
-TimeChoice of_date(const std::vector<NetcdfGrid>& files, const std::vector<Step>& steps,
+TimeChoice of_date(const std::vector<DataGrid>& files, const std::vector<Step>& steps,
                    const Moment& date) {
   if (std::all_of(steps.begin(), steps.end(), [](const Step& s) { return s.every_year; }))
     return in_the_year(files, steps, date);
@@ -209,12 +208,12 @@ TimeChoice of_all(const std::vector<Step>& steps) {
 }
 
 /// Files that tell no times: twelve steps are taken for the months, and nothing else.
-TimeChoice without_times(const std::vector<NetcdfGrid>& files, const OceanTime& when) {
+TimeChoice without_times(const std::vector<DataGrid>& files, const OceanTime& when) {
   TimeChoice choice{.fit = 3};
   std::optional<int> month = when.month;
   if (when.date) month = when.date->month;
   std::size_t all = 0;
-  for (const NetcdfGrid& grid : files) all += grid.times();
+  for (const DataGrid& grid : files) all += grid.times();
   const bool monthly = all == 12;
   std::size_t number = 0;
   for (std::size_t f = 0; f < files.size(); ++f)
@@ -240,10 +239,10 @@ TimeChoice without_times(const std::vector<NetcdfGrid>& files, const OceanTime& 
 
 }  // namespace
 
-TimeChoice choose_steps(const std::vector<NetcdfGrid>& files, const OceanTime& when) {
+TimeChoice choose_steps(const std::vector<DataGrid>& files, const OceanTime& when) {
   const auto steps = steps_of(files);
   std::size_t all = 0;
-  for (const NetcdfGrid& grid : files) all += grid.times();
+  for (const DataGrid& grid : files) all += grid.times();
   if (steps.size() != all) return without_times(files, when);
   if (when.date) return of_date(files, steps, *when.date);
   if (when.month) return of_month(files, steps, *when.month);

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "io/climatology/netcdf_grid.h"
+#include "io/climatology/data_grid.h"
 
 // Which time steps of which files stand for the time that a user asks for.
 namespace asdic::detail {
@@ -33,7 +33,7 @@ struct TimeChoice {
 /// interpolated between the steps about it, in the year where the data are of every year; what lies
 /// further from all of them than a month is refused. \throws InputError that says which times there
 /// are
-[[nodiscard]] TimeChoice choose_steps(const std::vector<NetcdfGrid>& files, const OceanTime& when);
+[[nodiscard]] TimeChoice choose_steps(const std::vector<DataGrid>& files, const OceanTime& when);
 
 }  // namespace climatology
 }  // namespace asdic::detail

@@ -90,7 +90,7 @@ Water::Water(const OceanSources& sources, const OceanTime& when, double latitude
                         .expected = "one on depth, longitude and latitude"});
   notes_ = temperature_->remarks();
   notes_.insert(notes_.end(), salinity_->remarks().begin(), salinity_->remarks().end());
-  const NetcdfGrid& t = temperature_->first();
+  const DataGrid& t = temperature_->first();
   const std::string standard = lower(t.standard_name()), variable = lower(t.variable()),
                     about = standard + " " + lower(t.long_name());
   const auto says = [&](const char* word) { return about.find(word) != std::string::npos; };
@@ -107,7 +107,7 @@ Water::Water(const OceanSources& sources, const OceanTime& when, double latitude
                      "potential temperature: that in situ was worked out of it (Bryden's "
                      "adiabatic lapse rate)");
   }
-  const NetcdfGrid& s = salinity_->first();
+  const DataGrid& s = salinity_->first();
   absolute_salinity_ =
       lower(s.standard_name()).find("absolute") != std::string::npos || lower(s.variable()) == "sa";
   if (absolute_salinity_)

@@ -1,6 +1,7 @@
 #include "io/scenario/area.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -18,7 +19,7 @@ struct MapTable {
   MapFile map = {};
 
   void describe(Fields& field) {
-    field.file(required("file"), map.file, "a readable netCDF file", "with the map");
+    field.file(required("file"), map.file, "a readable netCDF file or raster", "with the map");
     field(by_default("variable", "by its standard_name or a usual name"), map.variable,
           "its name in the file");
   }
@@ -98,6 +99,67 @@ AreaTable table_of(const AreaSettings& settings) {
   return table;
 }
 
+/// Whether maps lie where the others do, as far as their files tell how they are projected.
+class PlacesOfMaps {
+ public:
+  PlacesOfMaps(const AreaSettings& settings) : settings_(&settings) {}
+
+  /// \return a fault: what was found, what was expected; {}: none
+  struct Fault {
+    std::string got, expected;
+  };
+  [[nodiscard]] std::optional<Fault> of(const OpenedMap& map) {
+    (map.geographic ? geographic_ : projected_) |= true;
+    const std::string& projection = map.file->projection();
+    if (!projection.empty()) {
+      if (!first_) first_ = map;
+      if (first_->file->projection() != projection)
+        return Fault{map.name + " in " + map.file->projection_name() + ", " + first_->name +
+                         " in " + first_->file->projection_name(),
+                     "maps of one projection: \"gdalwarp -t_srs\" makes such"};
+    }
+    if (!first_ || !settings_->origin) return {};
+    const double x = settings_->easting, y = settings_->northing;
+    const MapFrame frame = MapFrame::geographic(*settings_->origin);
+    const auto off = [&](double east, double north) {
+      const auto there = first_->file->on_earth(x + east, y + north);
+      return there ? (frame.on_map(there->longitude, there->latitude) - Vec2(east, north)).norm()
+                   : 0.0;
+    };
+    if (const double away = off(0.0, 0.0); away > nearby) {
+      const auto there = *first_->file->on_earth(x, y);
+      return Fault{"[0, 0] in two places " + kilometres(away) + " apart: at " +
+                       degrees_text(settings_->origin->latitude, settings_->origin->longitude) +
+                       " by [environment.origin], at " +
+                       degrees_text(there.latitude, there.longitude) +
+                       " by easting and northing (" + first_->name + ", " +
+                       first_->file->projection_name() + ")",
+                   "one place"};
+    }
+    if (!geographic_ || !projected_) return {};
+    const double turned = std::max(off(baseline, 0.0), off(0.0, baseline));
+    if (turned > nearby)
+      return Fault{"maps in degrees and one in " + first_->file->projection_name() + ", " +
+                       first_->name + ", that part by " + kilometres(turned) + " " +
+                       kilometres(baseline) + " from [0, 0]",
+                   "all in degrees or all in one projection: \"gdalwarp -t_srs\" makes such"};
+    return {};
+  }
+
+ private:
+  static constexpr double nearby = 100.0, baseline = 10e3;  // [m]
+  static std::string kilometres(double metres) {
+    return to_text(std::round(metres / 10.0) / 100.0) + " km";
+  }
+  static std::string degrees_text(double latitude, double longitude) {
+    return climatology::place(std::round(1e5 * latitude) / 1e5, std::round(1e5 * longitude) / 1e5);
+  }
+
+  const AreaSettings* settings_;
+  std::optional<OpenedMap> first_;  // whose projection is known
+  bool geographic_ = false, projected_ = false;
+};
+
 }  // namespace
 
 AreaReading::AreaReading(TomlTable table, const OceanReading& reading,
@@ -122,6 +184,10 @@ AreaReading::AreaReading(TomlTable table, const OceanReading& reading,
   if (form.seabed) settings_.seabed = form.seabed->map.map;
   if (form.wind) settings_.wind = form.wind->map;
 
+  PlacesOfMaps places(settings_);
+  const auto check_place = [&](const OpenedMap& opened, const char* key) {
+    if (const auto wrong = places.of(opened)) throw table_.fault(key, wrong->expected, wrong->got);
+  };
   const auto open = [&](const MapFile& map, const climatology::GriddedQuantity& quantity,
                         const char* key, bool volume) {
     OpenedMap opened = open_map(reading.folder / map.file, map.variable, quantity,
@@ -131,6 +197,7 @@ AreaReading::AreaReading(TomlTable table, const OceanReading& reading,
                          "[environment.origin] with latitude_deg and longitude_deg, where the "
                          "map's [0, 0] is",
                          "a grid of longitude and latitude, " + opened.name);
+    check_place(opened, key);
     if (opened.depths.empty() == volume)
       throw table_.fault(key, volume ? "a variable over depth and map" : "a map without depths",
                          opened.name);

@@ -11,7 +11,7 @@
 
 #include "fuzz/fuzz_target.h"
 #include "fuzz/scratch.h"
-#include "io/climatology/netcdf_grid.h"
+#include "io/climatology/data_grid.h"
 #include "io/files/input_file.h"
 #include "io/isolated/child.h"
 #include "io/ping/ping_file.h"
@@ -139,7 +139,7 @@ void read_study(const std::filesystem::path& path) {
 }
 
 void read_grid(const std::filesystem::path& path) {
-  const auto grid = NetcdfGrid::find(path, {"temperature"});
+  const auto grid = DataGrid::find(path, {"temperature"});
   if (!grid) return;
   for (std::size_t level = 0; level < std::min<std::size_t>(grid->depths().size(), 3); ++level)
     static_cast<void>(grid->bilinear(15.0, 15.0, level) + grid->nearest(50.0, 40.0, level));

@@ -564,7 +564,7 @@ class Messages(Folder):
             with netCDF4.Dataset(self.folder / file, "a") as f:
                 f[name].units = before
         (self.folder / "a.tif").write_bytes(b"II*\0" + bytes(100))
-        self.refused(words(bathymetry="a.tif"), "a.tif", "gdal_translate")
+        self.refused(words(bathymetry="a.tif"), "a.tif", "a GeoTIFF", "GDAL")
         self.refused(words() + " --date yesterday", "--date", "2024-02-29")
         self.refused(words() + " --date 2024-01-01 --month 1", "--month")
         self.refused(words() + " --step 10", "--step", "--bearing and --range")

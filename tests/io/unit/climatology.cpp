@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "io/climatology/netcdf_grid.h"
+#include "io/climatology/data_grid.h"
 #include "io/scenario/propagation.h"
 #include "io/text/csv_table.h"
 #include "support/temporary_directory.h"
@@ -74,9 +74,9 @@ std::filesystem::path write_grid(const TemporaryDirectory& folder) {
   return path;
 }
 
-TEST(NetcdfGrid, ReadsByTheConventions) {
+TEST(DataGrid, ReadsByTheConventions) {
   const TemporaryDirectory folder;
-  const auto grid = NetcdfGrid::find(write_grid(folder), {"nothing", "sea_water_temperature"});
+  const auto grid = DataGrid::find(write_grid(folder), {"nothing", "sea_water_temperature"});
   ASSERT_TRUE(grid.has_value());
   EXPECT_EQ(grid->variable(), "packed");
   EXPECT_EQ(grid->times(), 12U);
@@ -86,12 +86,12 @@ TEST(NetcdfGrid, ReadsByTheConventions) {
   EXPECT_NEAR(grid->nearest(240.0, 60.0, 0, 0), 10.0 + 1.01, 1e-12);   // the same meridian
   EXPECT_NEAR(grid->nearest(179.0, -60.0, 1, 0), 10.0 + 0.20, 1e-12);  // wraps to −180
   EXPECT_TRUE(std::isnan(grid->nearest(0.0, 0.0)));
-  EXPECT_FALSE(NetcdfGrid::find(folder / "grid.nc", {"salinity"}).has_value());
+  EXPECT_FALSE(DataGrid::find(folder / "grid.nc", {"salinity"}).has_value());
 }
 
-TEST(NetcdfGrid, BilinearLeavesMissingNeighboursOut) {
+TEST(DataGrid, BilinearLeavesMissingNeighboursOut) {
   const TemporaryDirectory folder;
-  const auto grid = NetcdfGrid::find(write_grid(folder), {"packed"});
+  const auto grid = DataGrid::find(write_grid(folder), {"packed"});
   ASSERT_TRUE(grid.has_value());
   EXPECT_NEAR(grid->bilinear(-90.0, 30.0, 1, 0), 10.0 + (0.01 + 0.02 + 0.11 + 0.12) / 4.0, 1e-12);
   EXPECT_NEAR(grid->bilinear(150.0, 60.0, 1, 0), 10.0 + (0.05 + 0.00) / 2.0, 1e-12);  // the seam
@@ -99,11 +99,11 @@ TEST(NetcdfGrid, BilinearLeavesMissingNeighboursOut) {
   EXPECT_TRUE(std::isnan(grid->bilinear(0.0, 0.0, 1, 0)));
 }
 
-TEST(NetcdfGrid, OtherFilesAreInputErrors) {
+TEST(DataGrid, OtherFilesAreInputErrors) {
   const TemporaryDirectory folder;
   const auto path = folder.write("text.nc", "hello");
   try {
-    static_cast<void>(NetcdfGrid::find(path, {"x"}));
+    static_cast<void>(DataGrid::find(path, {"x"}));
     FAIL();
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("text.nc: found a file that cannot be opened"));

@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "io/bellhop/case_reader.h"
 #include "io/climatology/climatology.h"
-#include "io/climatology/netcdf_grid.h"
+#include "io/climatology/data_grid.h"
 #include "io/hdf5/hdf5_file.h"
 #include "io/result/result_file.h"
 #include "io/scenario/scenario_reader.h"
@@ -78,7 +78,7 @@ TEST(InputFile, EveryReaderComesByIt) {
               {"p.wav", [](const auto& path) { static_cast<void>(read_pulse_file(path)); }},
               {"a.h5", [](const auto& path) { static_cast<void>(Hdf5File::open(path)); }},
               {"b.h5", [](const auto& path) { static_cast<void>(read_result(path)); }},
-              {"a.nc", [](const auto& path) { static_cast<void>(NetcdfGrid::find(path, {"x"})); }},
+              {"a.nc", [](const auto& path) { static_cast<void>(DataGrid::find(path, {"x"})); }},
               {"a.env", [](const auto& path) { static_cast<void>(bellhop::read_case(path)); }},
               {"a.shd", [](const auto& path) { static_cast<void>(read_result(path)); }},
               {"a.arr", [](const auto& path) { static_cast<void>(read_result(path)); }},

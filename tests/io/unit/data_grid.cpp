@@ -1,4 +1,4 @@
-#include "io/climatology/netcdf_grid.h"
+#include "io/climatology/data_grid.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -41,9 +41,9 @@ std::filesystem::path write_odd(const TemporaryDirectory& folder) {
   return path;
 }
 
-TEST(NetcdfGrid, ProjectedAxesInTheOrderOfTheFile) {
+TEST(DataGrid, ProjectedAxesInTheOrderOfTheFile) {
   const TemporaryDirectory folder;
-  const auto grid = NetcdfGrid::find(write_odd(folder), {"speed"});
+  const auto grid = DataGrid::find(write_odd(folder), {"speed"});
   ASSERT_TRUE(grid);
   EXPECT_FALSE(grid->geographic());
   EXPECT_FALSE(grid->wraps());
@@ -57,9 +57,9 @@ TEST(NetcdfGrid, ProjectedAxesInTheOrderOfTheFile) {
   EXPECT_TRUE(std::isnan(grid->nearest(-501.0, 0.0)));
 }
 
-TEST(NetcdfGrid, BlocksOnRisingAxes) {
+TEST(DataGrid, BlocksOnRisingAxes) {
   const TemporaryDirectory folder;
-  const auto grid = NetcdfGrid::find(write_odd(folder), {"speed"});
+  const auto grid = DataGrid::find(write_odd(folder), {"speed"});
   ASSERT_TRUE(grid);
   const auto block = grid->block({0, 2}, {0, 1}, {0, 1}, 1);  // x = 3 to 1 km, the upper two levels
   EXPECT_THAT(block.eastings, ElementsAre(1000.0, 2000.0, 3000.0));
@@ -81,7 +81,7 @@ TEST(NetcdfGrid, BlocksOnRisingAxes) {
 }
 
 // A block of more than a piece is the same as its parts.
-TEST(NetcdfGrid, LargeBlocksAreReadInPieces) {
+TEST(DataGrid, LargeBlocksAreReadInPieces) {
   const TemporaryDirectory folder;
   const auto path = folder / "large.nc";
   constexpr std::size_t nx = 1500, ny = 1100;
@@ -95,7 +95,7 @@ TEST(NetcdfGrid, LargeBlocksAreReadInPieces) {
     file.axis("lat", y, {{"units", "degrees_north"}});
     file.variable("elevation", NC_SHORT, {"lat", "lon"}, z);
   }
-  const auto grid = NetcdfGrid::find(path, {"elevation"});
+  const auto grid = DataGrid::find(path, {"elevation"});
   ASSERT_TRUE(grid);
   const auto block = grid->block({0, nx - 1}, {0, ny - 1});
   for (std::size_t j = 0; j < ny; j += 7)
@@ -103,7 +103,7 @@ TEST(NetcdfGrid, LargeBlocksAreReadInPieces) {
       ASSERT_EQ(block.at(i, j), static_cast<double>(((ny - 1 - j) * nx + i) % 30'011));
 }
 
-TEST(NetcdfGrid, BlocksAcrossTheSeamOfTheGlobe) {
+TEST(DataGrid, BlocksAcrossTheSeamOfTheGlobe) {
   const TemporaryDirectory folder;
   const auto path = folder / "globe.nc";
   {
@@ -112,7 +112,7 @@ TEST(NetcdfGrid, BlocksAcrossTheSeamOfTheGlobe) {
     file.axis("latitude", {-45.0, 45.0}, {{"units", "degrees_north"}});
     file.variable("u10", NC_FLOAT, {"latitude", "longitude"}, {0, 1, 2, 3, 10, 11, 12, 13});
   }
-  const auto grid = NetcdfGrid::find(path, {"u10"});
+  const auto grid = DataGrid::find(path, {"u10"});
   ASSERT_TRUE(grid);
   EXPECT_TRUE(grid->wraps());
   const auto block = grid->block({3, 1}, {0, 1});
@@ -121,7 +121,7 @@ TEST(NetcdfGrid, BlocksAcrossTheSeamOfTheGlobe) {
 }
 
 // Longitudes of a grid over the date line, as some makers number them, go on rising.
-TEST(NetcdfGrid, LongitudesThatJump) {
+TEST(DataGrid, LongitudesThatJump) {
   const TemporaryDirectory folder;
   const auto path = folder / "fiji.nc";
   {
@@ -130,13 +130,13 @@ TEST(NetcdfGrid, LongitudesThatJump) {
     file.axis("lat", {-18.0, -17.0}, {{"units", "degrees_north"}});
     file.variable("z", NC_FLOAT, {"lat", "lon"}, {0, 1, 2, 3, 4, 5, 6, 7});
   }
-  const auto grid = NetcdfGrid::find(path, {"z"});
+  const auto grid = DataGrid::find(path, {"z"});
   ASSERT_TRUE(grid);
   EXPECT_THAT(grid->eastings(), ElementsAre(179.0, 179.5, 180.0, 180.5));
   EXPECT_EQ(grid->nearest(-179.5, -17.0), 7.0);
 }
 
-TEST(NetcdfGrid, AxesThatAreNoneAreInputErrors) {
+TEST(DataGrid, AxesThatAreNoneAreInputErrors) {
   const TemporaryDirectory folder;
   const auto fault = [&](const Values& x, const char* units) -> std::string {
     {
@@ -146,7 +146,7 @@ TEST(NetcdfGrid, AxesThatAreNoneAreInputErrors) {
       file.variable("z", NC_FLOAT, {"lat", "x"}, Values(2 * x.size()));
     }
     try {
-      static_cast<void>(NetcdfGrid::find(folder / "bad.nc", {"z"}));
+      static_cast<void>(DataGrid::find(folder / "bad.nc", {"z"}));
       return "";
     } catch (const InputError& error) {
       return error.what();
@@ -159,7 +159,7 @@ TEST(NetcdfGrid, AxesThatAreNoneAreInputErrors) {
 }
 
 // netCDF's own fill value, and a range of unpacked values beside packed ones.
-TEST(NetcdfGrid, MissingWithoutAFillValue) {
+TEST(DataGrid, MissingWithoutAFillValue) {
   const TemporaryDirectory folder;
   const auto path = folder / "fill.nc";
   {
@@ -173,14 +173,14 @@ TEST(NetcdfGrid, MissingWithoutAFillValue) {
     nc_put_att_double(file.id(), id, "valid_range", NC_DOUBLE, 2, range);
     nc_enddef(file.id());
   }
-  const auto grid = NetcdfGrid::find(path, {"t"});
+  const auto grid = DataGrid::find(path, {"t"});
   ASSERT_TRUE(grid);
   EXPECT_NEAR(grid->nearest(0.0, 0.0), 10.0, 1e-12);
   EXPECT_TRUE(std::isnan(grid->nearest(1.0, 0.0)));
   EXPECT_TRUE(std::isnan(grid->nearest(2.0, 0.0)));  // 30, above 20
 }
 
-TEST(NetcdfGrid, TimesOfAClimatology) {
+TEST(DataGrid, TimesOfAClimatology) {
   const TemporaryDirectory folder;
   const auto path = folder / "woa.nc";
   {
@@ -195,7 +195,7 @@ TEST(NetcdfGrid, TimesOfAClimatology) {
     file.axis("lat", {0.5}, {{"units", "degrees_north"}});
     file.variable("t_an", NC_FLOAT, {"time", "lat", "lon"}, {1.0, 2.0});
   }
-  const auto grid = NetcdfGrid::find(path, {"t_an"});
+  const auto grid = DataGrid::find(path, {"t_an"});
   ASSERT_TRUE(grid);
   EXPECT_TRUE(grid->every_year());
   EXPECT_EQ(iso(grid->moments().at(0)), "1986-01-16T12:00");
@@ -204,7 +204,7 @@ TEST(NetcdfGrid, TimesOfAClimatology) {
 }
 
 // A grid as large as GEBCO's (3.7e9 cells, 7.5 GB if it were written) is opened, not loaded.
-TEST(NetcdfGrid, LargeGridsAreOpenedNotLoaded) {
+TEST(DataGrid, LargeGridsAreOpenedNotLoaded) {
   const TemporaryDirectory folder;
   const auto path = folder / "gebco.nc";
   constexpr std::size_t nx = 86'400, ny = 43'200;
@@ -225,7 +225,7 @@ TEST(NetcdfGrid, LargeGridsAreOpenedNotLoaded) {
     ASSERT_EQ(nc_put_var1_short(file.id(), id, end, &height), NC_NOERR);
   }
   const auto begin = std::chrono::steady_clock::now();
-  const auto grid = NetcdfGrid::find(path, {"elevation"});
+  const auto grid = DataGrid::find(path, {"elevation"});
   ASSERT_TRUE(grid);
   EXPECT_EQ(grid->nearest(-180.0 + 70'000.4 / 240.0, -90.0 + 30'000.6 / 240.0), -4321.0);
   const auto block = grid->block({69'990, 70'010}, {29'990, 30'010});

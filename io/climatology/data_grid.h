@@ -6,22 +6,20 @@
 #include <vector>
 
 #include "io/climatology/calendar.h"
+#include "io/climatology/grid_source.h"
 
 namespace asdic::detail {
 
-/// One variable of a gridded netCDF file on longitude × latitude, or on projected x × y, (× depth)
-/// (× time), by the COARDS and CF conventions: axes are known by their units, standard_name, axis
-/// or positive attributes.
+/// One variable of a gridded file on longitude × latitude, or on projected x × y, (× depth)
+/// (× time), whatever the file is: netCDF (netcdf_source.h), a raster (raster_source.h), text
+/// (ascii_grid.h).
 ///
 /// The file is opened, not loaded: its axes are in memory, and of its values what was asked for.
-/// They come unpacked (scale_factor, add_offset) and NaN where missing (missing_value, _FillValue,
-/// netCDF's own fill value, valid_range, valid_min, valid_max). Longitudes may run 0..360,
-/// −180..180 or anything else; the grid wraps when it goes round. The netCDF library is not
-/// thread-safe: one thread at a time.
-class NetcdfGrid {
+/// They come unpacked (scale and offset) and NaN where missing. Longitudes may run 0..360,
+/// −180..180 or anything else; the grid wraps when it goes round. One thread at a time.
+class DataGrid {
  public:
-  /// The horizontal ones are x and y [m] where the grid is projected.
-  enum class Axis { longitude, latitude, depth, time };
+  using Axis = GridAxis;
 
   /// The first and last of some indices along an axis, both included.
   struct Indices {
@@ -41,23 +39,17 @@ class NetcdfGrid {
     }
   };
 
-  /// Opens a variable by standard_name, else by name (letter case does not matter).
-  /// \param names  in order of preference   \return nothing if the file has none of them
-  /// \throws InputError if the file is not readable netCDF, or the variable has no longitude and
-  /// latitude (or projected x and y), a dimension longer than one that is no known axis, or an axis
-  /// that neither rises nor falls
-  [[nodiscard]] static std::optional<NetcdfGrid> find(const std::filesystem::path& path,
-                                                      const std::vector<std::string>& names);
-  /// A grid that another reader has in memory: one level, one time. \param northings  as they are
-  /// stored   \param values  [northings × eastings], the last fastest, NaN where missing
-  [[nodiscard]] static NetcdfGrid of_plane(const std::filesystem::path& path,
-                                           const std::string& variable,
-                                           std::vector<double> eastings,
-                                           std::vector<double> northings,
-                                           std::vector<double> values);
-  NetcdfGrid(NetcdfGrid&&) noexcept;
-  NetcdfGrid& operator=(NetcdfGrid&&) noexcept;
-  ~NetcdfGrid();
+  /// \return nothing if the source has no such variable   \throws InputError for axes that do not
+  /// belong together
+  [[nodiscard]] static std::optional<DataGrid> of(const std::filesystem::path& path,
+                                                  std::unique_ptr<const GridSource> source);
+  /// Of a netCDF file (netcdf_source.h): by standard_name, else by name.
+  /// \return nothing if the file has none of these names   \throws InputError
+  [[nodiscard]] static std::optional<DataGrid> find(const std::filesystem::path& path,
+                                                    const std::vector<std::string>& names);
+  DataGrid(DataGrid&&) noexcept;
+  DataGrid& operator=(DataGrid&&) noexcept;
+  ~DataGrid();
 
   [[nodiscard]] const std::filesystem::path& path() const noexcept;
   [[nodiscard]] const std::string& variable() const noexcept;
@@ -68,6 +60,14 @@ class NetcdfGrid {
   [[nodiscard]] const std::vector<double>& flag_values() const noexcept;
   [[nodiscard]] const std::string& flag_meanings() const noexcept;  ///< words between spaces
   [[nodiscard]] bool has(Axis axis) const noexcept;
+  /// Of projected axes, where the file tells: the projection's name, and a text that is the same
+  /// for the same projection; else "".
+  [[nodiscard]] const std::string& projection_name() const noexcept;
+  [[nodiscard]] const std::string& projection() const noexcept;
+  /// A place of such axes [m] on the Earth; nothing where the file does not tell.
+  [[nodiscard]] std::optional<GridSource::Place> on_earth(double x, double y) const;
+  /// What a user should know of it.
+  [[nodiscard]] const std::vector<std::string>& remarks() const noexcept;
   /// Whether the horizontal axes are longitude and latitude; else they are x and y.
   [[nodiscard]] bool geographic() const noexcept;
   /// The horizontal axes in the order of the file: [° east] without a jump, or x [m]
@@ -116,7 +116,7 @@ class NetcdfGrid {
 
  private:
   struct Impl;
-  explicit NetcdfGrid(std::unique_ptr<Impl> impl);
+  explicit DataGrid(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
 
