@@ -271,8 +271,11 @@ OceanArea write_ocean_area(const OceanSources& sources, const OceanRequest& requ
   double deepest = centre.water_depth;
   std::size_t holes = 0;
   std::vector<double> elevation;
-  for (const double value : bathymetry.values) {
-    elevation.push_back(-floor.sign() * value);
+  for (std::size_t k = 0; k < bathymetry.values.size(); ++k) {
+    const double value = bathymetry.values[k];
+    elevation.push_back(-floor.checked(floor.sign() * value,
+                                       {bathymetry.northings[k / bathymetry.eastings.size()],
+                                        bathymetry.eastings[k % bathymetry.eastings.size()]}));
     if (std::isnan(value))
       ++holes;
     else

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "core/error.h"
 #include "core/text.h"
@@ -40,6 +41,19 @@ double depth_sign(const DataGrid& grid, std::vector<std::string>& notes) {
     notes.push_back(grid.path().filename().string() + ": " + grid.variable() +
                     " does not say what it is: taken as a height, positive up");
   return -1.0;
+}
+
+double Floor::checked(double depth, const Place& place_) const {
+  constexpr double most = 20'000.0;
+  if (std::isnan(depth) || std::abs(depth) <= most) return depth;
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", std::abs(depth));
+  throw InputError({.where = tiles_.name_at(place_.latitude, place_.longitude) + ": " +
+                             place(place_.latitude, place_.longitude),
+                    .got = "a " + std::string(depth > 0.0 ? "depth" : "height") + " of " +
+                           std::string(text) + " m",
+                    .expected = "at most 20000 m: a file tells which value stands for none, and "
+                                "its unit"});
 }
 
 double Floor::require(const Place& place_) const {

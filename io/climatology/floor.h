@@ -24,12 +24,15 @@ class Floor {
 
   /// Of the nearest grid point [m]: below 0 on land, NaN where unknown.
   [[nodiscard]] double depth(const Place& place) const {
-    return sign_ * tiles_.nearest(place.latitude, place.longitude);
+    return checked(sign_ * tiles_.nearest(place.latitude, place.longitude), place);
   }
   /// Between grid points, for a floor without steps.
   [[nodiscard]] double between(const Place& place) const {
-    return sign_ * tiles_.bilinear(place.latitude, place.longitude);
+    return checked(sign_ * tiles_.bilinear(place.latitude, place.longitude), place);
   }
+  /// That depth. \throws InputError for one that is none: of a missing value that the file does not
+  /// tell, or of another unit
+  [[nodiscard]] double checked(double depth, const Place& place) const;
   /// \return the depth [m] \throws InputError for land, a hole, or a place out of the files
   [[nodiscard]] double require(const Place& place) const;
   [[nodiscard]] double sign() const { return sign_; }  ///< of values that become depths

@@ -86,11 +86,12 @@ std::unique_ptr<const GridSource> open_raster(const std::filesystem::path& path,
                                               const RasterBand& band) {
   const std::string kind = raster_kind(path).value_or("a raster");
   if (!reads_rasters())
-    throw InputError({.where = path.string(),
-                      .got = kind,
-                      .expected = "a netCDF file: \"gdal_translate -of netCDF " +
-                                  path.filename().string() +
-                                  " NEW.nc\" makes one; or an asdic that is built with GDAL"});
+    throw InputError(
+        {.where = path.string(),
+         .got = kind,
+         .expected = "a netCDF file: \"gdal_translate -of netCDF " + path.filename().string() +
+                     " NEW.nc\" makes one, with the variable Band1; or an asdic that is "
+                     "built with GDAL"});
   note_read(raster_values(path));
   return std::make_unique<const RasterSource>(path, kind, band);
 }

@@ -215,6 +215,10 @@ class Ocean(Folder):
         self.refused_ocean("--bathymetry map.tif", "map.tif: found a picture", "numbers")
         geotiff(self.folder / "palette.tif", [np.zeros((9, 9), "u1")], **PIXELS, colours="palette")
         self.refused_ocean("--bathymetry palette.tif", "palette.tif: band 1: found colours of a palette")
+        wild = z.copy()
+        wild[np.hypot(LAT[:, None] - HERE[0], LON[None, :] - HERE[1]) < 0.1] = -3.4e38  # which the file does not tell
+        geotiff(self.folder / "wild.tif", [wild], **PIXELS)
+        self.refused_ocean("--bathymetry wild.tif", "wild.tif: band 1: 50.504 N 3.753 E: found a depth of", "which value stands for none")
         (self.folder / "cut.tif").write_bytes((self.folder / "turned.tif").read_bytes()[:500])
         self.refused_ocean("--bathymetry cut.tif", "cut.tif: found a file that cannot be opened", "a GeoTIFF that GDAL can read")
         make("feet.tif", units=["ft"])
