@@ -21,9 +21,10 @@ except ImportError:
 import h5py
 
 ROOT = Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(ROOT / "tests" / "support"))
+from geodesic import inverse, radii  # noqa: E402
+
 ASDIC = os.environ["ASDIC"]
-EARTH = 6378137.0  # [m] WGS 84's equator
-SQUARE = (2 - 1 / 298.257223563) / 298.257223563  # of its eccentricity
 
 
 # The sea of the test: a cone on a plain, whose summit is a grid point; water by month.
@@ -31,16 +32,8 @@ SUMMIT = (31.0 + 0.5 / 240.0, -60.0 + 0.5 / 240.0)  # 15 arcseconds, cells' midd
 PLAIN, TOP, SLOPE = 4000.0, 1000.0, 0.2
 
 
-def radii(lat):
-    """Of a step to the north, and of one to the east about the axis [m]."""
-    w = 1 - SQUARE * np.sin(np.radians(lat)) ** 2
-    return EARTH * (1 - SQUARE) / w ** 1.5, EARTH / np.sqrt(w) * np.cos(np.radians(lat))
-
-
 def distance(lat, lon, lat0, lon0):
-    """On the ellipsoid, of places tens of kilometres apart: by the radii half way."""
-    north, east = radii((lat + lat0) / 2)
-    return np.hypot(north * np.radians(lat - lat0), east * np.radians(lon - lon0))
+    return inverse(lat0, lon0, lat, lon)[0]
 
 
 def floor(lat, lon):
@@ -628,11 +621,8 @@ sample_rate = 4000.0
             self.assertAlmostEqual(f["platform_latitude"][0], 31.0, 9)
             lat, lon = f["target_latitude"][0, 0], f["target_longitude"][0, 0]
             self.assertAlmostEqual(distance(lat, lon, 31.0, -60.5), 5000.0, delta=0.01)
-            # Its bearing from the origin: half way, less half of what the meridians turn.
-            north, east = radii((lat + 31.0) / 2)
-            bearing = np.degrees(np.arctan2(east * (lon + 60.5), north * (lat - 31.0)))
-            bearing -= (lon + 60.5) / 2 * np.sin(np.radians((lat + 31.0) / 2))
-            self.assertAlmostEqual(bearing, np.degrees(np.arctan2(3, 4)), 4)
+            bearing = np.degrees(inverse(31.0, -60.5, lat, lon)[1])
+            self.assertAlmostEqual(bearing, np.degrees(np.arctan2(3, 4)), 6)
 
 
 class Area(Folder):

@@ -1,7 +1,6 @@
 """Latitudes and longitudes in results: scatterers, detections, tracks, areas, tables and pictures.
 
-Truth: distance and bearing on the sphere from the map's [0, 0], by the haversine and the formula of the
-inverse problem, against the x and y beside them or the cells' range and bearing."""
+Truth: distance and bearing of the geodesic from the map's [0, 0], by Vincenty's formula, against the x and y beside them or the cells' range and bearing."""
 import csv
 import os
 import subprocess
@@ -17,7 +16,9 @@ import numpy as np
 ASDIC = os.environ.get("ASDIC", "build/release/bin/asdic")
 BUILD = Path(os.environ.get("ASDIC_BUILD", "build/release"))
 sys.path.insert(0, str(BUILD / "python"))
-EARTH = 6.371e6  # [m]
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "support"))
+from geodesic import inverse  # noqa: E402
+
 ORIGIN = (-52.0, 179.98)  # the map crosses the date line
 
 LIKE = dict(target_depth=100.0, max_speed=7.0, start=1.6, stop=2.4)  # what is processed, as below
@@ -65,14 +66,6 @@ interval = 10.0
 recording_duration = 3.0
 sample_rate = 4000.0
 """
-
-
-def inverse(lat1, lon1, lat2, lon2):
-    """Distance [m] and bearing [rad] from one place to others."""
-    a, b, turn = np.radians(lat1), np.radians(lat2), np.radians(np.subtract(lon2, lon1))
-    h = np.sin((b - a) / 2) ** 2 + np.cos(a) * np.cos(b) * np.sin(turn / 2) ** 2
-    bearing = np.arctan2(np.sin(turn) * np.cos(b), np.cos(a) * np.sin(b) - np.sin(a) * np.cos(b) * np.cos(turn))
-    return 2 * EARTH * np.arcsin(np.sqrt(h)), bearing
 
 
 def on_map(lat, lon):

@@ -18,6 +18,7 @@ import numpy as np
 
 ROOT = Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tests/support"))
+from geodesic import inverse, radii  # noqa: E402
 from geotiff import binary_grid, float_grid, geotiff, sparse_geotiff  # noqa: E402
 
 ASDIC = os.environ["ASDIC"]
@@ -146,12 +147,15 @@ class Ocean(Folder):
         geotiff(self.folder / "chart.tif", [HEIGHT.astype("f8")], **PIXELS, units=["m"], described=["elevation"])
         ocean, _ = self.ocean("--bathymetry chart.tif", "--bearing 90 --range 20km --step 1km")
         shape = ocean["bottom"]["shape"]
-        # The great circle from HERE, of this sphere; a fragment has a digit behind the point.
-        span = np.array(shape["range"]) / 6.371e6
-        a = np.radians(HERE[0])
-        lat = np.arcsin(np.sin(a) * np.cos(span))
-        lon = HERE[1] + np.degrees(np.arctan2(np.sin(span) * np.cos(a), np.cos(span) - np.sin(a) * np.sin(lat)))
-        np.testing.assert_allclose(shape["depth"], depth(np.degrees(lat), lon), atol=0.0501)
+        # The geodesic from HERE to the east, by Newton's steps; a fragment has a digit behind the point.
+        span = np.array(shape["range"])
+        lat, lon = np.full_like(span, HERE[0]), HERE[1] + np.degrees((span + 1e-3) / radii(HERE[0])[1])
+        for _ in range(5):
+            way, bearing = inverse(*HERE, lat, lon)
+            north, east = radii(lat)
+            lat = lat - np.degrees(way * np.cos(bearing) / north)
+            lon = lon + np.degrees((span - way * np.sin(bearing)) / east)
+        np.testing.assert_allclose(shape["depth"], depth(lat, lon), atol=0.0501)
 
     def test_bands_by_number_and_by_description(self):
         other = np.full_like(HEIGHT, -7.0).astype("f4")
@@ -266,10 +270,10 @@ class Area(Folder):
         geotiff(self.folder / "chart.tif", [HEIGHT.astype("f4")], **PIXELS, units=["m"], described=["elevation"])
         found, bearing, span = self.bottom('[environment.origin]\nlatitude_deg = 50.5\nlongitude_deg = 3.75\n'
                                            '[environment.area.bathymetry]\nfile = "chart.tif"\n')
-        # On the plane tangent to the sphere; over 4 km meridians turn by 0.05 %, 2 m of way, 3 mm of depth.
-        degree = np.radians(1.0) * 6.371e6
-        lat = 50.5 + span * np.cos(bearing) / degree
-        lon = 3.75 + span * np.sin(bearing) / (degree * np.cos(np.radians(50.5)))
+        # On the plane tangent to the ellipsoid; over 4 km meridians turn by 0.05 %, 2 m of way, 3 mm of depth.
+        north, east = radii(50.5)
+        lat = 50.5 + np.degrees(span * np.cos(bearing) / north)
+        lon = 3.75 + np.degrees(span * np.sin(bearing) / east)
         np.testing.assert_allclose(found, depth(lat, lon), atol=0.02)
 
     def utm(self, name, west=495e3, north=5000.0, rows=100, columns=100, step=100.0, **how):

@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "raytrace/area/ocean_on_map.h"
 #include "raytrace/ocean/slice.h"
+#include "support/geodesic.h"
 #include "support/map_of.h"
 
 namespace asdic::detail {
@@ -48,34 +49,6 @@ TEST(MapAxis, PlacesMustIncrease) {
   EXPECT_THROW(MapAxis("x", {0.0}), InputError);
 }
 
-/// The geodesic from one place of WGS 84 to another: length [m] and bearing at its begin [rad].
-/// Vincenty's inverse formula (Survey Review 23, 88, 1975).
-std::pair<double, double> geodesic(const GeographicPlace& from, const GeographicPlace& to) {
-  constexpr double a = 6378137.0, f = 1.0 / 298.257223563, b = a * (1.0 - f);
-  const double u1 = std::atan((1.0 - f) * std::tan(radians(from.latitude)));
-  const double u2 = std::atan((1.0 - f) * std::tan(radians(to.latitude)));
-  const double s1 = std::sin(u1), c1 = std::cos(u1), s2 = std::sin(u2), c2 = std::cos(u2);
-  const double apart = radians(to.longitude - from.longitude);
-  double turn = apart, sine = 0.0, cosine = 1.0, sigma = 0.0, cos2 = 1.0, middle = 0.0;
-  for (int i = 0; i < 20; ++i) {
-    sine = std::hypot(c2 * std::sin(turn), c1 * s2 - s1 * c2 * std::cos(turn));
-    cosine = s1 * s2 + c1 * c2 * std::cos(turn);
-    sigma = std::atan2(sine, cosine);
-    const double across = c1 * c2 * std::sin(turn) / sine;
-    cos2 = 1.0 - across * across;
-    middle = cosine - 2.0 * s1 * s2 / cos2;
-    const double c = f / 16.0 * cos2 * (4.0 + f * (4.0 - 3.0 * cos2));
-    turn = apart + (1.0 - c) * f * across *
-                       (sigma + c * sine * (middle + c * cosine * (2.0 * middle * middle - 1.0)));
-  }
-  const double k = cos2 * (a * a - b * b) / (b * b);
-  const double p = 1.0 + k / 16384.0 * (4096.0 + k * (-768.0 + k * (320.0 - 175.0 * k)));
-  const double q = k / 1024.0 * (256.0 + k * (-128.0 + k * (74.0 - 47.0 * k)));
-  const double more = q * sine * (middle + 0.25 * q * cosine * (2.0 * middle * middle - 1.0));
-  return {b * p * (sigma - more),
-          std::atan2(c2 * std::sin(turn), c1 * s2 - s1 * c2 * std::cos(turn))};
-}
-
 // The distance from the origin and the bearing there are those of geodesics on the ellipsoid: 1 mm
 // at 100 km, 5 cm at 300 km.
 TEST(MapFrame, DistanceAndBearingFromTheOriginAreThoseOfGeodesics) {
@@ -86,10 +59,10 @@ TEST(MapFrame, DistanceAndBearingFromTheOriginAreThoseOfGeodesics) {
       for (const double distance : {1.0, 5e3, 1e5, 3e5}) {
         const double x = distance * std::sin(bearing), y = distance * std::cos(bearing);
         const auto place = frame.on_grid(x, y);
-        const auto [length, begin] = geodesic(origin, {place.v, place.u});
+        const support::Geodesic way(origin.latitude, origin.longitude, place.v, place.u);
         const double off = 1e-3 * std::max(0.1, std::pow(distance / 1e5, 4.0));
-        EXPECT_NEAR(length, distance, off) << latitude << ' ' << bearing;
-        EXPECT_NEAR(std::remainder(begin - bearing, 2.0 * pi), 0.0, off / distance);
+        EXPECT_NEAR(way.distance, distance, off) << latitude << ' ' << bearing;
+        EXPECT_NEAR(std::remainder(way.bearing - bearing, 2.0 * pi), 0.0, off / distance);
         const Vec2 back = frame.on_map(place.u, place.v);
         EXPECT_NEAR(back.x(), x, 1e-4);
         EXPECT_NEAR(back.y(), y, 1e-4);
