@@ -67,9 +67,9 @@ TEST(MapFrame, DistanceAndBearingFromTheOriginAreThoseOfGeodesics) {
         EXPECT_NEAR(back.x(), x, 1e-4);
         EXPECT_NEAR(back.y(), y, 1e-4);
         constexpr double step = 10.0;
-        const auto differs = [&](const Vec2& way, double in_u, double in_v) {
-          const auto after = frame.on_grid(x + way.x(), y + way.y()),
-                     before = frame.on_grid(x - way.x(), y - way.y());
+        const auto differs = [&](const Vec2& move, double in_u, double in_v) {
+          const auto after = frame.on_grid(x + move.x(), y + move.y()),
+                     before = frame.on_grid(x - move.x(), y - move.y());
           EXPECT_NEAR(in_u, (after.u - before.u) / (2.0 * step), 1e-10);
           EXPECT_NEAR(in_v, (after.v - before.v) / (2.0 * step), 1e-10);
         };
