@@ -14,6 +14,7 @@
 #include "app/progress_bar.h"
 #include "core/error.h"
 #include "io/bellhop/case_reader.h"
+#include "io/bellhop/map_run.h"
 #include "io/bellhop/results.h"
 #include "io/hdf5/own_files.h"
 #include "io/ping/provenance.h"
@@ -91,8 +92,7 @@ PropagationResult search(const bellhop::Input& input, const BellhopOptions& opti
     const MemoryBudget budget = MemoryBudget::without_key();
     PropagationResult result;
     until_interrupted([&] {
-      result = options.bellhop_emulation ? run_bellhop_emulation(input.run_case, progress, budget)
-                                         : run(input.run_case, progress, budget);
+      result = bellhop::run_all_planes(input, options.bellhop_emulation, progress, budget);
     });
     return result;
   } catch (const Interrupted&) {
@@ -125,14 +125,13 @@ void write_results(const bellhop::Input& input, PropagationResult&& result,
       options.dialect == "wide" ? bellhop::Dialect::wide : bellhop::Dialect::fortran;
   if (files.field) {  // the only file of its task
     bellhop::write_shade_file(std::move(*files.field),
-                              bellhop::shade_file(run_case, std::move(result), dialect));
+                              bellhop::shade_file(input, std::move(result), dialect));
     report.file(with(root, ".shd"));
     return;
   }
   if (files.arrivals) {
-    bellhop::write_arrivals_file(
-        std::move(*files.arrivals),
-        bellhop::arrivals_file(run_case, result, input.binary_arrivals, dialect));
+    bellhop::write_arrivals_file(std::move(*files.arrivals),
+                                 bellhop::arrivals_file(input, result, dialect));
     report.file(with(root, ".arr"));
   }
   if (files.rays) {
@@ -149,8 +148,12 @@ void run_case(const BellhopOptions& options, const std::filesystem::path& root, 
   for (const std::string& leak : input.leaks) tell("asdic: note: " + leak);
   report.line(input.echo);
   report.notes(input.notes);
-  report.line(options.bellhop_emulation ? "traced     as BELLHOP does it, step by step"
-                                        : "traced     by asdic's own tracer");
+  report.line(std::string(options.bellhop_emulation ? "traced     as BELLHOP does it, step by step"
+                                                    : "traced     by asdic's own tracer") +
+              (input.run_case.dimension == 3 ? ", in three dimensions" : "") +
+              (input.map && input.map->planes() > 1
+                   ? fmt::format(", in {} planes", input.map->planes())
+                   : ""));
 
   ResultFiles files(input.run_case.task, root, options.force);
   PropagationResult result = search(input, options);
@@ -199,8 +202,8 @@ int bellhop_command(const BellhopOptions& options) {
 void add_bellhop_command(Program& program) {
   program.add_command(
       "bellhop",
-      "Run a BELLHOP case: reads ROOT.env and its companions, writes ROOT.shd, ROOT.arr or\n"
-      "ROOT.ray, and ROOT.prt.",
+      "Run a case of BELLHOP or BELLHOP3D: reads ROOT.env and its companions, writes ROOT.shd,\n"
+      "ROOT.arr or ROOT.ray, and ROOT.prt.",
       [](const Command& command) {
         auto options = std::make_shared<BellhopOptions>();
         command.add_option("root", options->root, "name of the case, with or without .env")
@@ -223,6 +226,9 @@ void add_bellhop_command(Program& program) {
         command.add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
         add_force_option(command, options->force);
         command.footer(
+            "A case of BELLHOP3D (sources at x and y, azimuths of receivers) runs in every plane, "
+            "or\n"
+            "in three dimensions where the sixth letter of its run type is 3.\n"
             "Ctrl-C stops; nothing half-written is left.\n"
             "Example:  asdic bellhop munk -o /tmp/munk\n");
         command.runs([options] { return bellhop_command(*options); });

@@ -127,12 +127,16 @@ std::vector<std::string> missed_paths(const compare::ArrivalDifference& d,
     const compare::MissedPath& path = d.missed[i];
     const std::size_t depth = b.irregular ? path.range : path.row;
     lines.push_back(fmt::format(
-        "{} dB re the strongest at {} km, {} m: {} surface and {} bottom bounces, {} s, launched "
+        "{} dB re the strongest at {}{} km, {} m: {} surface and {} bottom bounces, {} s, launched "
         "at "
         "{} deg (positive down)",
-        number(path.level_db, 1), number(b.receiver_ranges[path.range] / 1000.0, 3),
-        number(b.receiver_depths[depth], 1), path.path.surface_bounces, path.path.bottom_bounces,
-        number(path.path.delay, 6), number(path.path.launch_angle_deg, 3)));
+        number(path.level_db, 1),
+        b.map.is_map() ? fmt::format("azimuth {:g} deg, ",
+                                     b.map.azimuths_deg[path.plane % b.map.azimuths_deg.size()])
+                       : "",
+        number(b.receiver_ranges[path.range] / 1000.0, 3), number(b.receiver_depths[depth], 1),
+        path.path.surface_bounces, path.path.bottom_bounces, number(path.path.delay, 6),
+        number(path.path.launch_angle_deg, 3)));
   }
   return lines;
 }

@@ -37,6 +37,7 @@ std::string extension_of(const std::string& name) {
 
 std::vector<std::string> env_to_toml(const ConvertOptions& options) {
   const bellhop::Input input = bellhop::read_case(std::filesystem::path(options.input));
+  bellhop::require_one_plane(input);
   OutputFile(options.output, rules_for(options.output, options.force))
       .write(std::string("# ") + own::remark + " convert.\n" + to_toml(input.run_case));
   return input.notes;

@@ -23,6 +23,7 @@ struct ExplainChoice {
 
 int explain_case(const ExplainChoice& options) {
   const bellhop::Input input = bellhop::read_case(std::filesystem::path(options.root));
+  bellhop::require_one_plane(input);
   const tbb::global_control limit(
       tbb::global_control::max_allowed_parallelism,
       static_cast<std::size_t>(options.threads.value_or(tbb::info::default_concurrency())));

@@ -59,12 +59,21 @@ std::string places(const std::vector<double>& sources, const std::string& receiv
                      extent(ranges).text("m"));
 }
 
+/// Nothing of a file of one plane.
+std::string map_line(const bellhop::MapPlaces& map) {
+  if (!map.is_map()) return "";
+  return fmt::format("map        {} of sources, receivers on {}: {}, counter-clockwise from x\n",
+                     count_of(map.source_x.size() * map.source_y.size(), "place"),
+                     count_of(map.azimuths_deg.size(), "azimuth"),
+                     extent(map.azimuths_deg).text("deg"));
+}
+
 std::string content(const bellhop::ShadeFile& field) {
   const std::string receivers =
       field.irregular ? count_of(field.receiver_ranges.size(), "place")
                       : fmt::format("{} depths x {} ranges", field.receiver_depths.size(),
                                     field.receiver_ranges.size());
-  return frequency_line(field.frequency) +
+  return frequency_line(field.frequency) + map_line(field.map) +
          places(field.source_depths, receivers, field.receiver_depths, field.receiver_ranges) +
          loss_text(field.pressure);
 }
@@ -78,7 +87,7 @@ std::string content(const bellhop::ArrivalsFile& file) {
       bounces.add(row.surface_bounces + row.bottom_bounces);
       ++count;
     }
-  return frequency_line(file.frequency) +
+  return frequency_line(file.frequency) + map_line(file.map) +
          places(file.source_depths, count_of(file.arrivals.size(), "receiver"),
                 file.receiver_depths, file.receiver_ranges) +
          fmt::format("arrivals   {}, {} after the start, {}\n", count, delay.text("s"),

@@ -14,6 +14,7 @@ BellhopCase read_bellhop(const std::filesystem::path& root) {
   return translated(
       [&] {
         const detail::bellhop::Input input = detail::bellhop::read_case(name);
+        detail::bellhop::require_one_plane(input);
         return BellhopCase{
             .scenario = Scenario::parse(detail::to_toml(input.run_case), name.string() + ".toml"),
             .notes = input.notes};

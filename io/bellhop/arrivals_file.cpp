@@ -1,8 +1,10 @@
 // Arrivals of bellhop_files.h: .arr, ASCII or binary.
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
-#include <algorithm>
 #include "io/bellhop/bellhop_files.h"
 #include "io/bellhop/binary.h"
 #include "io/bellhop/fortran_format.h"
@@ -15,15 +17,25 @@ namespace asdic::detail::bellhop {
 
 namespace {
 
+/// Clockwise from the line to the receiver, of an azimuth counter-clockwise from x; within ±180°.
+double deflection(double receiver_deg, double azimuth_deg) noexcept {
+  return std::remainder(receiver_deg - azimuth_deg, 360.0);
+}
+double azimuth(double receiver_deg, double deflection_deg) noexcept {
+  return receiver_deg - deflection_deg;
+}
+
 /// Where the items of an arrivals file come from, one after another.
 class AsciiSource {
  public:
   AsciiSource(std::string_view bytes, const std::string& name) : text_(bytes, name) {}
 
-  void dimension() {
-    const std::string_view word = text_.word();
-    if (unquoted(word) != "2D") text_.fail("dimension", shown(word), "'2D'");
-    wide_ = word == "2D";  // bare: the C++ port
+  /// \return 2 or 3
+  int dimension() {
+    const std::string_view word = text_.word(), plain = unquoted(word);
+    if (plain != "2D" && plain != "3D") text_.fail("dimension", shown(word), "'2D' or '3D'");
+    wide_ = word == plain;  // bare: the C++ port
+    return plain == "3D" ? 3 : 2;
   }
   double frequency() { return text_.real("frequency"); }
   std::vector<double> vector(const char* item) {
@@ -33,19 +45,23 @@ class AsciiSource {
     return x;
   }
   std::int64_t count(const char* item) { return text_.integer(item, 0, most_of_a_count); }
-  ArrivalRow row() {
+  /// \param azimuth_deg  of the receiver, where the rows tell azimuths
+  ArrivalRow row(const std::optional<double>& azimuth_deg) {
     ArrivalRow a;
     a.amplitude = single("amplitude");
     a.phase_deg = single("phase");
     a.delay = single("delay");
     a.delay_imaginary = single("imaginary delay");
     a.launch_angle_deg = single("launch angle");
+    if (azimuth_deg) a.launch_deflection_deg = deflection(*azimuth_deg, single("launch azimuth"));
     a.arrival_angle_deg = single("arrival angle");
+    if (azimuth_deg) a.arrival_deflection_deg = deflection(*azimuth_deg, single("arrival azimuth"));
     a.surface_bounces = int(text_.integer("surface bounces", 0, most_of_a_count));
     a.bottom_bounces = int(text_.integer("bottom bounces", 0, most_of_a_count));
     return a;
   }
   bool at_end() { return text_.at_end(); }
+  [[nodiscard]] std::size_t size() const noexcept { return text_.bytes_left(); }
   [[nodiscard]] Dialect dialect() const noexcept {
     return wide_ ? Dialect::wide : Dialect::fortran;
   }
@@ -71,9 +87,12 @@ class BinarySource {
  public:
   BinarySource(std::string_view bytes, const std::string& name) : file_(bytes, name) {}
 
-  void dimension() {
+  int dimension() {
     const std::string_view word = record("dimension");
-    if (word.find("2D") == std::string_view::npos) fail("dimension", shown(word), "\"'2D'\"");
+    if (word.find("3D") != std::string_view::npos) return 3;
+    if (word.find("2D") == std::string_view::npos)
+      fail("dimension", shown(word), "\"'2D'\" or \"'3D'\"");
+    return 2;
   }
   double frequency() {
     const std::string_view content = record("frequency");
@@ -99,13 +118,17 @@ class BinarySource {
     if (n < 0) fail(item, std::to_string(n), "a whole number of at least 0");
     return n;
   }
-  ArrivalRow row() {
+  ArrivalRow row(const std::optional<double>& azimuth_deg) {
     const std::string_view content = record("arrival");
-    if (content.size() != 32)
+    const std::size_t numbers = azimuth_deg ? 10 : 8;
+    if (content.size() != 4 * numbers)
       fail("arrival", "a record of " + std::to_string(content.size()) + " bytes",
-           "8 numbers of 4 bytes");
-    double x[8];
-    for (std::size_t i = 0; i < 8; ++i) x[i] = number(content, 4 * i, false, "arrival");
+           std::to_string(numbers) + " numbers of 4 bytes");
+    double y[10];
+    for (std::size_t i = 0; i < numbers; ++i) y[i] = number(content, 4 * i, false, "arrival");
+    const std::array<double, 8> x =
+        azimuth_deg ? std::array{y[0], y[1], y[2], y[3], y[4], y[6], y[8], y[9]}
+                    : std::array{y[0], y[1], y[2], y[3], y[4], y[5], y[6], y[7]};
     for (const double bounces : {x[6], x[7]})
       if (!(bounces >= 0.0 && bounces <= double(most_of_a_count)))
         fail("bounces", shown(bounces), "a number of at least 0");
@@ -116,9 +139,12 @@ class BinarySource {
             .launch_angle_deg = x[4],
             .arrival_angle_deg = x[5],
             .surface_bounces = int(std::lround(x[6])),
-            .bottom_bounces = int(std::lround(x[7]))};
+            .bottom_bounces = int(std::lround(x[7])),
+            .launch_deflection_deg = azimuth_deg ? deflection(*azimuth_deg, y[5]) : 0.0,
+            .arrival_deflection_deg = azimuth_deg ? deflection(*azimuth_deg, y[7]) : 0.0};
   }
   [[nodiscard]] bool at_end() const noexcept { return position_ == file_.size(); }
+  [[nodiscard]] std::size_t size() const noexcept { return file_.size() - position_; }
   [[nodiscard]] Dialect dialect() const noexcept {
     return wide_ ? Dialect::wide : Dialect::fortran;
   }
@@ -165,27 +191,72 @@ class BinarySource {
   bool wide_ = false;
 };
 
+/// Where the receivers of one source stand in ArrivalsFile::arrivals, in the order of the file:
+/// azimuth slowest, range fastest. \param source  x slowest, depth fastest
+std::vector<std::size_t> receivers_of(const ArrivalsFile& file, std::size_t source) {
+  const std::size_t depths = file.source_depths.size(), azimuths = file.map.azimuths_deg.size();
+  const std::size_t here = file.rows() * file.receiver_ranges.size();
+  std::vector<std::size_t> places;
+  for (std::size_t a = 0; a < azimuths; ++a) {
+    const std::size_t plane = source / depths * azimuths + a;
+    for (std::size_t i = 0; i < here; ++i)
+      places.push_back((plane * depths + source % depths) * here + i);
+  }
+  return places;
+}
+
+std::size_t sources_of(const ArrivalsFile& file) {
+  return file.map.source_x.size() * file.map.source_y.size() * file.source_depths.size();
+}
+
+/// Of the receiver at a place of receivers_of(); none in a file without azimuths.
+std::optional<double> azimuth_at(const ArrivalsFile& file, std::size_t i) {
+  if (!file.three_dimensional) return std::nullopt;
+  return file.map.azimuths_deg[i / (file.rows() * file.receiver_ranges.size())];
+}
+
 /// Nothing in the file says whether the grid is irregular: one row then instead of one a depth.
 template <class Source>
 ArrivalsFile parse(Source source, bool binary, bool irregular) {
   ArrivalsFile file{.binary = binary, .irregular = irregular};
-  source.dimension();
+  file.three_dimensional = source.dimension() == 3;
   file.frequency = source.frequency();
   if (!(file.frequency > 0.0))
     source.fail("frequency", shown(file.frequency) + " Hz", "a frequency above 0 Hz");
+  if (file.three_dimensional) {
+    file.map.source_x = source.vector("source x");
+    file.map.source_y = source.vector("source y");
+  }
   file.source_depths = source.vector("source depths");
   file.receiver_depths = source.vector("receiver depths");
   file.receiver_ranges = source.vector("receiver ranges");
+  if (file.three_dimensional) file.map.azimuths_deg = source.vector("receiver bearings");
   file.dialect = source.dialect();
-  const std::size_t rows = irregular ? 1 : file.receiver_depths.size();
-  for (std::size_t s = 0; s < file.source_depths.size(); ++s) {
+  // every receiver takes two bytes at least: what a damaged count asks for is not taken at once
+  const double receivers = double(file.map.planes()) * double(file.source_depths.size()) *
+                           double(file.rows()) * double(file.receiver_ranges.size());
+  if (file.three_dimensional) {
+    if (receivers > double(source.size()))
+      source.fail("receivers", shown(receivers), "as many as the file can hold");
+    file.arrivals.resize(std::size_t(receivers));
+  }
+  for (std::size_t s = 0; s < sources_of(file); ++s) {
     (void)source.count("largest number of arrivals");
-    for (std::size_t i = 0; i < rows; ++i)
-      for (std::size_t j = 0; j < file.receiver_ranges.size(); ++j) {
-        const std::int64_t n = source.count("number of arrivals");
-        std::vector<ArrivalRow>& rows_here = file.arrivals.emplace_back();
-        for (std::int64_t k = 0; k < n; ++k) rows_here.push_back(source.row());
-      }
+    if (!file.three_dimensional) {
+      for (std::size_t i = 0; i < file.rows(); ++i)
+        for (std::size_t j = 0; j < file.receiver_ranges.size(); ++j) {
+          const std::int64_t n = source.count("number of arrivals");
+          std::vector<ArrivalRow>& rows_here = file.arrivals.emplace_back();
+          for (std::int64_t k = 0; k < n; ++k) rows_here.push_back(source.row(std::nullopt));
+        }
+      continue;
+    }
+    const std::vector<std::size_t> places = receivers_of(file, s);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const std::int64_t n = source.count("number of arrivals");
+      std::vector<ArrivalRow>& rows_here = file.arrivals[places[i]];
+      for (std::int64_t k = 0; k < n; ++k) rows_here.push_back(source.row(azimuth_at(file, i)));
+    }
   }
   if (!source.at_end())
     source.fail("end", "something after the arrivals of the last receiver", "nothing");
@@ -222,16 +293,23 @@ ArrivalsFile read_arrivals_file(const std::filesystem::path& path) {
 
 namespace {
 
-std::int64_t largest(const ArrivalsFile& file, std::size_t source, std::size_t receivers) {
+std::int64_t largest(const ArrivalsFile& file, const std::vector<std::size_t>& places) {
   std::size_t n = 0;
-  for (std::size_t i = 0; i < receivers; ++i)
-    n = std::max(n, file.arrivals[source * receivers + i].size());
+  for (const std::size_t place : places) n = std::max(n, file.arrivals[place].size());
   return std::int64_t(n);
+}
+
+/// Declination at the source and at the receiver, each with its azimuth where the receiver has one.
+std::vector<double> angles(const ArrivalRow& a, const std::optional<double>& azimuth_deg) {
+  if (!azimuth_deg) return {a.launch_angle_deg, a.arrival_angle_deg};
+  return {a.launch_angle_deg, azimuth(*azimuth_deg, a.launch_deflection_deg), a.arrival_angle_deg,
+          azimuth(*azimuth_deg, a.arrival_deflection_deg)};
 }
 
 std::string ascii_bytes(const ArrivalsFile& file) {
   const bool wide_ranges = file.dialect == Dialect::wide;
-  std::string text = wide_ranges ? "2D\n" : " '2D'\n";
+  const bool map = file.three_dimensional;
+  std::string text = wide_ranges ? (map ? "3D\n" : "2D\n") : (map ? " '3D'\n" : " '2D'\n");
   append_real8(text, file.frequency);
   text += '\n';
   const auto append_vector = [&](const std::vector<double>& x, bool wide) {
@@ -240,20 +318,26 @@ std::string ascii_bytes(const ArrivalsFile& file) {
       wide ? append_real8(text, value) : append_real4(text, static_cast<float>(value));
     text += '\n';
   };
+  if (map) {
+    append_vector(file.map.source_x, wide_ranges);
+    append_vector(file.map.source_y, wide_ranges);
+  }
   append_vector(file.source_depths, false);
   append_vector(file.receiver_depths, false);
   append_vector(file.receiver_ranges, wide_ranges);
-  const std::size_t receivers = file.arrivals.size() / file.source_depths.size();
-  for (std::size_t s = 0; s < file.source_depths.size(); ++s) {
-    append_integer(text, largest(file, s, receivers));
+  if (map) append_vector(file.map.azimuths_deg, wide_ranges);
+  for (std::size_t s = 0; s < sources_of(file); ++s) {
+    const std::vector<std::size_t> places = receivers_of(file, s);
+    append_integer(text, largest(file, places));
     text += '\n';
-    for (std::size_t i = 0; i < receivers; ++i) {
-      const auto& rows = file.arrivals[s * receivers + i];
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const auto& rows = file.arrivals[places[i]];
       append_integer(text, std::int64_t(rows.size()));
       text += '\n';
       for (const ArrivalRow& a : rows) {
-        for (const double value : {a.amplitude, a.phase_deg, a.delay, a.delay_imaginary,
-                                   a.launch_angle_deg, a.arrival_angle_deg})
+        for (const double value : {a.amplitude, a.phase_deg, a.delay, a.delay_imaginary})
+          append_real4(text, static_cast<float>(value));
+        for (const double value : angles(a, azimuth_at(file, i)))
           append_real4(text, static_cast<float>(value));
         append_integer(text, a.surface_bounces);
         append_integer(text, a.bottom_bounces);
@@ -286,25 +370,31 @@ std::string binary_bytes(const ArrivalsFile& file) {
     for (const double value : x) put_real(content, value, broad);
     put_record(content);
   };
-  put_record("'2D'");
+  put_record(file.three_dimensional ? "'3D'" : "'2D'");
   std::string frequency;
   put_real(frequency, file.frequency, wide);
   put_record(frequency);
+  if (file.three_dimensional) {
+    put_vector(file.map.source_x, wide);
+    put_vector(file.map.source_y, wide);
+  }
   put_vector(file.source_depths, false);
   put_vector(file.receiver_depths, false);
   put_vector(file.receiver_ranges, wide);
-  const std::size_t receivers = file.arrivals.size() / file.source_depths.size();
-  for (std::size_t s = 0; s < file.source_depths.size(); ++s) {
-    put_count(largest(file, s, receivers));
-    for (std::size_t i = 0; i < receivers; ++i) {
-      const auto& rows = file.arrivals[s * receivers + i];
+  if (file.three_dimensional) put_vector(file.map.azimuths_deg, wide);
+  for (std::size_t s = 0; s < sources_of(file); ++s) {
+    const std::vector<std::size_t> places = receivers_of(file, s);
+    put_count(largest(file, places));
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const auto& rows = file.arrivals[places[i]];
       put_count(std::int64_t(rows.size()));
       for (const ArrivalRow& a : rows) {
         std::string content;
-        for (const double value :
-             {a.amplitude, a.phase_deg, a.delay, a.delay_imaginary, a.launch_angle_deg,
-              a.arrival_angle_deg, double(a.surface_bounces), double(a.bottom_bounces)})
+        for (const double value : {a.amplitude, a.phase_deg, a.delay, a.delay_imaginary})
           put_real(content, value, false);
+        for (const double value : angles(a, azimuth_at(file, i))) put_real(content, value, false);
+        for (const int bounces : {a.surface_bounces, a.bottom_bounces})
+          put_real(content, double(bounces), false);
         put_record(content);
       }
     }

@@ -7,7 +7,8 @@
 
 #include "io/files/output_file.h"
 
-/// The files that BELLHOP writes, as plain data. Layouts: docs/formats/bellhop.md. In these structs
+/// The files that BELLHOP and BELLHOP3D write, as plain data. Layouts: docs/formats/bellhop.md,
+/// bellhop3d.md. In these structs
 /// as in the files: metres, seconds, Hz, degrees, angles positive down (declination).
 namespace asdic::detail::bellhop {
 
@@ -15,14 +16,31 @@ namespace asdic::detail::bellhop {
 /// and its C++ port float64.
 enum class Dialect { fortran, wide };
 
+/// Where sources and lines of receivers are on the map, x east, y north. Of a single plane: one 0
+/// each.
+struct MapPlaces {
+  std::vector<double> source_x = {0.0}, source_y = {0.0};  ///< [m]
+  std::vector<double> azimuths_deg = {0.0};                ///< counter-clockwise from x
+
+  /// x slowest, azimuth fastest.
+  [[nodiscard]] std::size_t planes() const noexcept {
+    return source_x.size() * source_y.size() * azimuths_deg.size();
+  }
+  /// Whether they are a map, and not the one plane that files of BELLHOP have.
+  [[nodiscard]] bool is_map() const noexcept { return *this != MapPlaces(); }
+  [[nodiscard]] bool operator==(const MapPlaces&) const = default;
+};
+
 /// A pressure field, `.shd`.
 struct ShadeFile {
   std::string title;
   bool irregular = false;
   double frequency = 0.0;
   std::vector<double> source_depths, receiver_depths, receiver_ranges;  ///< [m]
-  std::vector<std::complex<float>> pressure;  ///< [sources × rows × ranges]; rows: 1 if irregular
+  /// [planes × sources × rows × ranges]; rows: 1 if irregular
+  std::vector<std::complex<float>> pressure;
   Dialect dialect = Dialect::fortran;
+  MapPlaces map = {};
   [[nodiscard]] std::size_t rows() const noexcept { return irregular ? 1 : receiver_depths.size(); }
 };
 
@@ -34,7 +52,8 @@ struct ArrivalRow {
   double delay_imaginary = 0.0;  ///< ≤ 0; amplitude × exp(2πf·delay_imaginary) has the absorption
   double launch_angle_deg = 0.0, arrival_angle_deg = 0.0;
   int surface_bounces = 0, bottom_bounces = 0;
-  /// In three dimensions: of travel, clockwise from the line to the receiver; not in `.arr`
+  /// In three dimensions: of travel, clockwise from the line to the receiver; in a `.arr` of
+  /// BELLHOP3D as azimuths, in one of BELLHOP not at all
   double launch_deflection_deg = 0.0, arrival_deflection_deg = 0.0;
 };
 
@@ -44,8 +63,13 @@ struct ArrivalsFile {
   double frequency = 0.0;
   std::vector<double> source_depths, receiver_depths, receiver_ranges;  ///< [m]
   bool irregular = false;
-  std::vector<std::vector<ArrivalRow>> arrivals;  ///< [sources × rows × ranges], range fastest
+  /// [planes × sources × rows × ranges], range fastest
+  std::vector<std::vector<ArrivalRow>> arrivals;
   Dialect dialect = Dialect::fortran;
+  bool three_dimensional = false;  ///< laid out as BELLHOP3D does it, with azimuths
+  MapPlaces map = {};
+
+  [[nodiscard]] std::size_t rows() const noexcept { return irregular ? 1 : receiver_depths.size(); }
 };
 
 /// Rays or eigenrays, `.ray`.

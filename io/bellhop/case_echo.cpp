@@ -86,6 +86,8 @@ const char* profile_words(char letter) noexcept {
       return "monotone cubic";
     case 'Q':
       return "range-dependent, bilinear";
+    case 'H':
+      return "over map and depth";
     default:
       return "Munk's profile";
   }
@@ -175,6 +177,26 @@ std::string echo(const CaseReading& reading) {
                   ocean.attenuation_db_per_km);
   echo_boundary(lines, "surface", ocean.surface);
   echo_boundary(lines, "bottom", ocean.bottom);
+  if (const auto& map = reading.input.map) {
+    const auto grid = [&](const char* who, const std::optional<GridFile>& file, bool kind) {
+      if (!file) return;
+      const auto [least, greatest] = std::minmax_element(file->values.begin(), file->values.end());
+      lines.add("%-10s grid of %zu x %zu%s%s: x %g to %g km, y %g to %g km; %g to %g %s", who,
+                file->x.size(), file->y.size(),
+                file->z.empty() ? "" : (" x " + std::to_string(file->z.size())).c_str(),
+                !kind               ? ""
+                : file->curvilinear ? ", bicubic"
+                                    : ", facets",
+                file->x.front() / 1000.0, file->x.back() / 1000.0, file->y.front() / 1000.0,
+                file->y.back() / 1000.0, *least, *greatest, kind ? "m" : "m/s");
+    };
+    grid("altimetry", map->altimetry, true);
+    grid("bathymetry", map->bathymetry, true);
+    grid("speeds", map->water, false);
+    echo_vector(lines, "source x", map->source_x, 1000.0, "km");
+    echo_vector(lines, "source y", map->source_y, 1000.0, "km");
+    echo_vector(lines, "azimuths", map->azimuths_deg, 1.0, "degrees, counter-clockwise from x");
+  }
   echo_vector(lines, "sources", run_case.source_depths, 1.0, "m");
   echo_vector(lines, "receivers", run_case.receivers.depths, 1.0, "m");
   echo_vector(lines, run_case.receivers.irregular ? "irregular" : "", run_case.receivers.ranges,
@@ -182,7 +204,14 @@ std::string echo(const CaseReading& reading) {
   lines.add("%-10s %d beams from %g to %g degrees (positive down), step %g m", "fan",
             run_case.literal.beams, -degrees(run_case.beams.highest),
             -degrees(run_case.beams.lowest), run_case.literal.step);
-  lines.add("%-10s %g m, %g km", "box", run_case.box_depth, run_case.box_range / 1000.0);
+  if (const auto& map = reading.input.map) {
+    lines.add("%-10s %d beams in azimuth from %g to %g degrees", "", map->fan,
+              map->lowest_azimuth_deg, map->highest_azimuth_deg);
+    lines.add("%-10s %g m, %g km in x, %g km in y", "box", run_case.box_depth, map->box_x / 1000.0,
+              map->box_y / 1000.0);
+  } else {
+    lines.add("%-10s %g m, %g km", "box", run_case.box_depth, run_case.box_range / 1000.0);
+  }
   return std::move(lines).text();
 }
 

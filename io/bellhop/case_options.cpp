@@ -30,10 +30,10 @@ void read_letters(CaseReading& reading, std::string letters) {
   letters.resize(std::max<std::size_t>(letters.size(), 6), ' ');
 
   options.profile = letters[0];
-  if (std::string_view("NCPSQA").find(options.profile) > 5)
-    env.fail(
-        "letter 1", shown(letters.substr(0, 1)),
-        "N (1/c^2 linear), C (c linear), P (PCHIP), S (spline), Q (range-dependent) or A (Munk)");
+  if (std::string_view("NCPSQAH").find(options.profile) > 6)
+    env.fail("letter 1", shown(letters.substr(0, 1)),
+             "N (1/c^2 linear), C (c linear), P (PCHIP), S (spline), Q (range-dependent), A (Munk) "
+             "or, over a map, H (hexahedral)");
   options.surface = boundary_letter(env, letters, 1);
   const auto unit = attenuation_unit(letters[2]);
   if (!unit)

@@ -82,6 +82,21 @@ void read_section(CaseReading& reading, const std::vector<double>& depth,
 // case_run.cpp
 void read_run(CaseReading& reading);  ///< run type, fan, step, box, Cerveny's lines
 
+// case_map.cpp
+/// Whether the lines from the bottom options on are those of BELLHOP3D: six vectors, where BELLHOP
+/// has three. The reader stays where it is.
+[[nodiscard]] bool is_over_map(ListReader env);
+/// \throws InputError  profile H in a case of one plane
+void require_profile_of_a_plane(const CaseReading& reading);
+/// All from the bottom options on, with the files of the map.
+void read_map_case(CaseReading& reading);
+/// What the letters of a run over a map must not be.
+void check_map_run(CaseReading& reading, const std::string& letters);
+
+// grid_file.cpp
+/// .bty, .ati or (a volume) .ssp of BELLHOP3D.
+[[nodiscard]] GridFile read_grid_file(ListReader file, bool volume);
+
 // case_vectors.cpp
 void read_receivers(CaseReading& reading);  ///< sources, receivers
 

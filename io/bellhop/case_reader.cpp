@@ -33,17 +33,29 @@ InputError told_of_file(const InputError& error, const Input& input) {
   return InputError(std::move(fault));
 }
 
+void require_one_plane(const Input& input) {
+  if (input.map)
+    throw InputError({.where = input.file,
+                      .got = "a case of BELLHOP3D, over a map",
+                      .expected = "one of a single plane; \"asdic bellhop\" runs it"});
+}
+
 Input read_case(const Texts& texts, const std::string& root_name) {
   CaseReading reading{
       .env = ListReader(texts.env, root_name + ".env"), .root = root_name, .texts = texts};
   read_head(reading);
   read_profile(reading);
-  if (reading.options.altimetry) shape_of(reading, reading.ocean().surface, true);
-  read_bottom_options(reading);
-  if (reading.options.bathymetry) shape_of(reading, reading.ocean().bottom, false);
-  if (varies_with_range(reading.ocean())) reading.ocean().spreading = Spreading::cylindrical;
-  read_receivers(reading);
-  read_run(reading);
+  if (is_over_map(reading.env)) {
+    read_map_case(reading);
+  } else {
+    require_profile_of_a_plane(reading);
+    if (reading.options.altimetry) shape_of(reading, reading.ocean().surface, true);
+    read_bottom_options(reading);
+    if (reading.options.bathymetry) shape_of(reading, reading.ocean().bottom, false);
+    if (varies_with_range(reading.ocean())) reading.ocean().spreading = Spreading::cylindrical;
+    read_receivers(reading);
+    read_run(reading);
+  }
   add_warnings(warnings(reading.run_case()), reading.input.notes);
   reading.input.echo = echo(reading);
   reading.input.file = reading.env.file();

@@ -81,16 +81,20 @@ void read_run_type(CaseReading& reading) {
     reading.note(env.where("letter 5") +
                  ": the depths and the ranges of the receivers were sorted, each on their own, as "
                  "BELLHOP does: those of an irregular grid (I) no longer pair as written");
-  if (letters[5] == '3') reading.note("run type, letter 6: a 2-D run although the file says 3-D");
+  if (reading.input.map)
+    check_map_run(reading, letters);
+  else if (letters[5] == '3')
+    reading.note("run type, letter 6: a 2-D run although the file says 3-D");
   const ReceiverGrid& grid = run_case.receivers;
   if (grid.irregular && grid.depths.size() != grid.ranges.size())
     env.fail("letter 5",
              std::to_string(grid.depths.size()) + " receiver depths and " +
                  std::to_string(grid.ranges.size()) + " ranges",
              "as many depths as ranges on an irregular grid (I)");
-  if (double(run_case.source_depths.size()) * double(grid.size()) > most_receivers)
-    env.fail("", shown(double(run_case.source_depths.size()) * double(grid.size())) + " receivers",
-             "at most " + shown(most_receivers));
+  const double planes = reading.input.map ? double(reading.input.map->planes()) : 1.0;
+  if (const double all = planes * double(run_case.source_depths.size()) * double(grid.size());
+      all > most_receivers)
+    env.fail("", shown(all) + " receivers", "at most " + shown(most_receivers));
   if (letters[2] == '*') run_case.beams.pattern = read_source_pattern(reading);
 }
 
@@ -167,25 +171,70 @@ void read_fan(CaseReading& reading) {
   }
 }
 
-void read_step_and_box(CaseReading& reading) {
+void read_step(CaseReading& reading) {
   ListReader& env = reading.env;
-  PropagationCase& run_case = reading.run_case();
-  env.begin("STEP ZBOX RBOX");
-  run_case.literal.step = env.need_real("step");
-  if (run_case.literal.step < 0.0)
-    env.fail("step", shown(run_case.literal.step) + " m", "a step of at least 0 m (0: automatic)");
-  run_case.box_depth = env.need_real("box depth");
-  if (!(run_case.box_depth > 0.0))
-    env.fail("box depth", shown(run_case.box_depth) + " m", "a depth above 0 m");
-  const double box_km = env.need_real("box range");
-  if (!(box_km > 0.0)) env.fail("box range", shown(box_km) + " km", "a range above 0 km");
-  run_case.box_range = 1000.0 * box_km;
+  double& step = reading.run_case().literal.step;
+  step = env.need_real("step");
+  if (step < 0.0) env.fail("step", shown(step) + " m", "a step of at least 0 m (0: automatic)");
+}
+
+void read_box_depth(CaseReading& reading) {
+  ListReader& env = reading.env;
+  double& depth = reading.run_case().box_depth;
+  depth = env.need_real("box depth");
+  if (!(depth > 0.0)) env.fail("box depth", shown(depth) + " m", "a depth above 0 m");
+}
+
+/// \return [m]
+double read_box_range(ListReader& env, const char* item) {
+  const double km = env.need_real(item);
+  if (!(km > 0.0)) env.fail(item, shown(km) + " km", "a range above 0 km");
+  return 1000.0 * km;
+}
+
+void tell_step(CaseReading& reading) {
+  double& step = reading.run_case().literal.step;
+  if (step != 0.0) return;
+  step = (reading.bottom_depth - reading.surface_depth) / 10.0;
+  reading.note("step 0: asdic chooses its own; BELLHOP's rule gives " + shown(step) + " m");
+}
+
+void read_step_and_box(CaseReading& reading) {
+  reading.env.begin("STEP ZBOX RBOX");
+  read_step(reading);
+  read_box_depth(reading);
+  reading.run_case().box_range = read_box_range(reading.env, "box range");
+  reading.env.end();
+  tell_step(reading);
+}
+
+/// The same of BELLHOP3D, in another order.
+void read_step_and_boxes(CaseReading& reading) {
+  MapInput& map = *reading.input.map;
+  reading.env.begin("STEP XBOX YBOX ZBOX");
+  read_step(reading);
+  map.box_x = read_box_range(reading.env, "box x");
+  map.box_y = read_box_range(reading.env, "box y");
+  read_box_depth(reading);
+  reading.env.end();
+  tell_step(reading);
+  reading.run_case().box_range = std::hypot(map.box_x, map.box_y);
+}
+
+/// Beams in azimuth.
+void read_azimuth_fan(CaseReading& reading) {
+  ListReader& env = reading.env;
+  MapInput& map = *reading.input.map;
+  env.begin("number of beams in azimuth");
+  map.fan = int(env.need_integer("", 0, most_beams));
   env.end();
-  if (run_case.literal.step == 0.0) {
-    run_case.literal.step = (reading.bottom_depth - reading.surface_depth) / 10.0;
-    reading.note("step 0: asdic chooses its own; BELLHOP's rule gives " +
-                 shown(run_case.literal.step) + " m");
-  }
+  const GivenVector given = read_vector(env, map.fan == 0 ? 2 : map.fan, "launch azimuths");
+  for (const double angle : given.values)
+    if (!(std::abs(angle) <= 720.0))
+      env.fail("azimuth", shown(angle) + " degrees", "an azimuth from -720 to 720 degrees");
+  const auto [lowest, highest] = std::minmax_element(given.values.begin(), given.values.end());
+  map.lowest_azimuth_deg = *lowest;
+  map.highest_azimuth_deg = *highest;
 }
 
 /// Where rays go on beyond the profiles of a .ssp file.
@@ -272,6 +321,11 @@ CervenyBeams read_cerveny(CaseReading& reading) {
 void read_run(CaseReading& reading) {
   read_run_type(reading);
   read_fan(reading);
+  if (reading.input.map) {
+    read_azimuth_fan(reading);
+    read_step_and_boxes(reading);
+    return;
+  }
   read_step_and_box(reading);
   note_short_section(reading);
   const BeamKind kind = reading.run_case().beams.kind;

@@ -7,6 +7,7 @@
 #include "io/bellhop/attenuation.h"
 #include "io/bellhop/case_writer_parts.h"
 #include "io/bellhop/decimal.h"
+#include "io/bellhop/grid_file.h"
 #include "io/hdf5/own_files.h"
 
 namespace asdic::detail::bellhop {
@@ -57,6 +58,7 @@ std::vector<double> profile_depths(const Environment& ocean) {
 
 char profile_letter(CaseWriting& writing) {
   const Environment& ocean = writing.run_case.environment;
+  if (writing.map != nullptr && writing.map->water) return 'H';
   if (ocean.section) return 'Q';
   if (is_plain_munk(ocean)) return 'A';
   if (ocean.water.munk_parameters()) {
@@ -86,12 +88,13 @@ char volume_letter(const Environment& ocean) noexcept {
 
 std::string top_options(CaseWriting& writing) {
   const Environment& ocean = writing.run_case.environment;
-  std::string letters = {profile_letter(writing),
-                         letter_of(ocean.surface),
-                         'W',
-                         volume_letter(ocean),
-                         ocean.surface.shape ? '~' : ' ',
-                         writing.run_case.literal.single_beam ? 'I' : ' '};
+  std::string letters = {
+      profile_letter(writing),
+      letter_of(ocean.surface),
+      'W',
+      volume_letter(ocean),
+      ocean.surface.shape || (writing.map != nullptr && writing.map->altimetry) ? '~' : ' ',
+      writing.run_case.literal.single_beam ? 'I' : ' '};
   while (letters.back() == ' ') letters.pop_back();
   return quoted(letters) + '\n';
 }
@@ -162,14 +165,18 @@ std::string boundary_text(CaseWriting& writing, const Boundary& boundary, bool s
 
 }  // namespace
 
-Written write_case(const PropagationCase& run_case, bool binary_arrivals) {
+namespace {
+
+Written write(const PropagationCase& run_case, bool binary_arrivals, const MapInput* map) {
   const Environment& ocean = run_case.environment;
   CaseWriting writing{.run_case = run_case, .depths = profile_depths(ocean)};
+  writing.map = map;
   writing.volume_loss =
       absorption_db_per_km(ocean.absorption, run_case.frequency) / (1000.0 * db_per_neper);
   if (!ocean.biology.empty())
     writing.note("layers of fish become attenuation at the nodes of the profile");
-  if (run_case.beams.source == SourceKind::point && spreading_across(ocean) == Spreading::plane)
+  if (map == nullptr && run_case.beams.source == SourceKind::point &&
+      spreading_across(ocean) == Spreading::plane)
     writing.note(
         "the sea is the same across the plane (environment.spreading), and BELLHOP takes it for "
         "the same "
@@ -185,11 +192,30 @@ Written write_case(const PropagationCase& run_case, bool binary_arrivals) {
   env += boundary_text(writing, ocean.surface, true);
   env += profile_text(writing);
   if (ocean.section) write_section(writing);
-  env += std::string("'") + letter_of(ocean.bottom) + (ocean.bottom.shape ? "~" : "") + "' 0\n";
+  const bool shaped = ocean.bottom.shape || (map != nullptr && map->bathymetry);
+  env += std::string("'") + letter_of(ocean.bottom) + (shaped ? "~" : "") + "' 0\n";
   env += boundary_text(writing, ocean.bottom, false);
   env += run_text(writing, binary_arrivals);
   env += std::string("! ") + own::remark + '\n';
+  if (map != nullptr)
+    for (const auto& [grid, ending] :
+         {std::pair{&map->bathymetry, ".bty"}, {&map->altimetry, ".ati"}, {&map->water, ".ssp"}})
+      if (*grid) writing.companion(ending, grid_file_text(**grid));
   return std::move(writing.out);
+}
+
+}  // namespace
+
+Written write_case(const PropagationCase& run_case, bool binary_arrivals) {
+  return write(run_case, binary_arrivals, nullptr);
+}
+
+Written write_map_case(const Input& input) {
+  PropagationCase run_case = input.run_case;
+  if (input.map && input.map->area) run_case.environment = input.map->area->everywhere();
+  if (input.map) run_case.environment.bottom.depth = input.map->profile_depth;
+  if (input.map) run_case.environment.surface.depth = input.map->profile_top;
+  return write(run_case, input.binary_arrivals, input.map ? &*input.map : nullptr);
 }
 
 void write_case_files(const std::filesystem::path& root, const Texts& texts,

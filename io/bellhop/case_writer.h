@@ -20,6 +20,9 @@ struct Written {
 /// floor that is rigid here and fluid there
 [[nodiscard]] Written write_case(const PropagationCase& run_case, bool binary_arrivals = false);
 
+/// The same of a case of BELLHOP3D that was read: its grids are written as they were.
+[[nodiscard]] Written write_map_case(const Input& input);
+
 /// ROOT.env and its companions: all may be written, or none is. \throws InputError, RunError
 void write_case_files(const std::filesystem::path& root, const Texts& texts,
                       const OutputRules& rules = {});

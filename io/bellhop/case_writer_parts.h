@@ -7,8 +7,9 @@ namespace asdic::detail::bellhop {
 /// A case that is being written, and what all parts must know.
 struct CaseWriting {
   const PropagationCase& run_case;
-  std::vector<double> depths;  ///< [n] of the profile's rows, from the surface to DEPTH
-  double volume_loss = 0.0;    ///< [Np/m]
+  std::vector<double> depths;     ///< [n] of the profile's rows, from the surface to DEPTH
+  double volume_loss = 0.0;       ///< [Np/m]
+  const MapInput* map = nullptr;  ///< of a case of BELLHOP3D
   Written out{};
 
   void note(std::string text) { out.notes.push_back(std::move(text)); }

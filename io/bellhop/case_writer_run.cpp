@@ -127,17 +127,28 @@ std::string run_text(CaseWriting& writing, bool binary_arrivals) {
   const BeamSettings& beams = run_case.beams;
   const ReceiverGrid& grid = run_case.receivers;
   const double top = writing.depths.front(), bottom = writing.depths.back();
-  std::string text =
-      vector_text(writing, run_case.source_depths, 1.0F, top, bottom, "source depths") +
-      vector_text(writing, grid.depths, 1.0F, top, bottom, "receiver depths") +
-      vector_text(writing, grid.ranges, 1000.0F, -infinity, infinity, "receiver ranges");
+  const MapInput* map = writing.map;
+  if (map == nullptr && run_case.dimension == 3)
+    writing.note(
+        "a run in three dimensions becomes one in its plane: the files are those of BELLHOP");
+  const auto places = [&](const std::vector<double>& x, float factor, const char* who) {
+    return vector_text(writing, x, factor, -infinity, infinity, who);
+  };
+  std::string text;
+  if (map != nullptr)
+    text = places(map->source_x, 1000.0F, "source x") + places(map->source_y, 1000.0F, "source y");
+  text += vector_text(writing, run_case.source_depths, 1.0F, top, bottom, "source depths") +
+          vector_text(writing, grid.depths, 1.0F, top, bottom, "receiver depths") +
+          vector_text(writing, grid.ranges, 1000.0F, -infinity, infinity, "receiver ranges");
+
+  if (map != nullptr) text += places(map->azimuths_deg, 1.0F, "receiver azimuths");
 
   std::string letters = {task_letter(run_case, binary_arrivals),
                          beam_letter(beams.kind),
                          beams.pattern ? '*' : ' ',
                          beams.source == SourceKind::line ? 'X' : 'R',
                          grid.irregular ? 'I' : 'R',
-                         '2',
+                         map != nullptr && run_case.dimension == 3 ? '3' : '2',
                          beams.displacement ? 'S' : ' '};
   while (letters.back() == ' ') letters.pop_back();
   text += '\'' + letters + "'\n";
@@ -145,6 +156,13 @@ std::string run_text(CaseWriting& writing, bool binary_arrivals) {
 
   text += fan_text(run_case);
   const auto km = [](double x) { return 1000.0 * x; };
+  if (map != nullptr) {
+    const auto box = [&](double x) { return decimal_read_as(x, x / 1000.0, km) + ' '; };
+    text += std::to_string(map->fan) + '\n' + decimal(map->lowest_azimuth_deg);
+    if (map->fan != 1) text += ' ' + decimal(map->highest_azimuth_deg);
+    return text + " /\n" + decimal(run_case.literal.step) + ' ' + box(map->box_x) +
+           box(map->box_y) + decimal(run_case.box_depth) + '\n';
+  }
   text += decimal(run_case.literal.step) + ' ' + decimal(run_case.box_depth) + ' ' +
           decimal_read_as(run_case.box_range, run_case.box_range / 1000.0, km) + '\n';
   if (beams.kind == BeamKind::cerveny_cartesian || beams.kind == BeamKind::cerveny_ray_centred)

@@ -12,8 +12,9 @@ namespace {
 
 std::string title_of(const PropagationCase& run_case) { return "BELLHOP- " + run_case.title; }
 
-void check_size(std::size_t found, const PropagationCase& run_case, const char* what) {
-  const std::size_t expected = run_case.source_depths.size() * run_case.receivers.size();
+void check_size(std::size_t found, const PropagationCase& run_case, const char* what,
+                std::size_t planes = 1) {
+  const std::size_t expected = planes * run_case.source_depths.size() * run_case.receivers.size();
   if (found != expected)
     throw InputError({.where = what,
                       .got = std::to_string(found) + " receivers",
@@ -49,8 +50,18 @@ ArrivalRow row_of(const Arrival& arrival, double frequency) {
 
 }  // namespace
 
-ShadeFile shade_file(const PropagationCase& run_case, PropagationResult result, Dialect dialect) {
-  check_size(result.field.size(), run_case, "field");
+namespace {
+
+MapPlaces places_of(const Input& input) {
+  if (!input.map) return {};
+  return {.source_x = input.map->source_x,
+          .source_y = input.map->source_y,
+          .azimuths_deg = input.map->azimuths_deg};
+}
+
+ShadeFile shade_file_of(const PropagationCase& run_case, PropagationResult result, Dialect dialect,
+                        const MapPlaces& map) {
+  check_size(result.field.size(), run_case, "field", map.planes());
   ShadeFile file{.title = title_of(run_case),
                  .irregular = run_case.receivers.irregular,
                  .frequency = run_case.frequency,
@@ -58,28 +69,52 @@ ShadeFile shade_file(const PropagationCase& run_case, PropagationResult result, 
                  .receiver_depths = run_case.receivers.depths,
                  .receiver_ranges = run_case.receivers.ranges,
                  .pressure = std::move(result.field),
-                 .dialect = dialect};
+                 .dialect = dialect,
+                 .map = map};
   if (run_case.beams.source == SourceKind::point)
     for (std::complex<float>& p : file.pressure) p = -p;
   return file;
 }
 
-ArrivalsFile arrivals_file(const PropagationCase& run_case, const PropagationResult& result,
-                           bool binary, Dialect dialect) {
-  check_size(result.arrivals.size(), run_case, "arrivals");
+ArrivalsFile arrivals_file_of(const PropagationCase& run_case, const PropagationResult& result,
+                              bool binary, Dialect dialect, const MapPlaces& map) {
+  check_size(result.arrivals.size(), run_case, "arrivals", map.planes());
   ArrivalsFile file{.binary = binary,
                     .frequency = run_case.frequency,
                     .source_depths = run_case.source_depths,
                     .receiver_depths = run_case.receivers.depths,
                     .receiver_ranges = run_case.receivers.ranges,
                     .irregular = run_case.receivers.irregular,
-                    .dialect = dialect};
+                    .dialect = dialect,
+                    .map = map};
   file.arrivals.reserve(result.arrivals.size());
   for (const Arrivals& arrivals : result.arrivals) {
     std::vector<ArrivalRow>& rows = file.arrivals.emplace_back();
     rows.reserve(arrivals.size());
     for (const Arrival& arrival : arrivals) rows.push_back(row_of(arrival, run_case.frequency));
   }
+  return file;
+}
+
+}  // namespace
+
+ShadeFile shade_file(const PropagationCase& run_case, PropagationResult result, Dialect dialect) {
+  return shade_file_of(run_case, std::move(result), dialect, {});
+}
+
+ShadeFile shade_file(const Input& input, PropagationResult result, Dialect dialect) {
+  return shade_file_of(input.run_case, std::move(result), dialect, places_of(input));
+}
+
+ArrivalsFile arrivals_file(const PropagationCase& run_case, const PropagationResult& result,
+                           bool binary, Dialect dialect) {
+  return arrivals_file_of(run_case, result, binary, dialect, {});
+}
+
+ArrivalsFile arrivals_file(const Input& input, const PropagationResult& result, Dialect dialect) {
+  ArrivalsFile file =
+      arrivals_file_of(input.run_case, result, input.binary_arrivals, dialect, places_of(input));
+  file.three_dimensional = input.map.has_value();
   return file;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 #include "io/bellhop/bellhop_files.h"
+#include "io/bellhop/case_reader.h"
 #include "raytrace/propagation.h"
 
 /// Answers of a run as the files of BELLHOP hold them.
@@ -17,6 +18,12 @@ namespace asdic::detail::bellhop {
 [[nodiscard]] ArrivalsFile arrivals_file(const PropagationCase& run_case,
                                          const PropagationResult& result, bool binary,
                                          Dialect dialect = Dialect::fortran);
+
+/// The same of a case that was read, with all its planes: a case of BELLHOP3D has files of
+/// BELLHOP3D. \param result  of run_all_planes()
+[[nodiscard]] ShadeFile shade_file(const Input& input, PropagationResult result, Dialect dialect);
+[[nodiscard]] ArrivalsFile arrivals_file(const Input& input, const PropagationResult& result,
+                                         Dialect dialect);
 
 /// The rays, source by source, by increasing declination.
 [[nodiscard]] RayFile ray_file(const PropagationCase& run_case, const PropagationResult& result);

@@ -46,6 +46,19 @@ struct Records {
   [[nodiscard]] std::size_t byte(std::size_t k) const noexcept { return length * (k - 1); }
 };
 
+/// Bearings or places of sources. What a file of one plane has there means nothing.
+std::vector<double> places(const BinaryView& file, std::size_t byte, std::size_t n, bool wide,
+                           bool one_plane, const char* item) {
+  std::vector<double> x =
+      wide ? numbers<double>(file, byte, n, item) : numbers<float>(file, byte, n, item);
+  for (double& value : x) {
+    if (std::isfinite(value)) continue;
+    if (!one_plane) file.fail(byte, item, shown(value), "a number");
+    value = 0.0;
+  }
+  return x;
+}
+
 /// Receiver ranges: float32 or float64, whichever reads like ranges.
 std::vector<double> ranges(const BinaryView& file, const Records& record, std::size_t n,
                            bool& wide) {
@@ -96,12 +109,12 @@ ShadeFile parse_shade_file(std::string_view bytes, const std::string& name) {
   for (std::size_t i = 0; i < 7; ++i) {
     const std::size_t byte = record.byte(3) + 4 * i;
     const auto count = file.at<std::int32_t>(byte, counts[i]);
-    const std::int64_t most = i < 4 ? 1 : std::int64_t(record.length) / (i == 6 ? 8 : 4);
+    const std::int64_t most = i == 0 ? 1 : std::int64_t(record.length) / (i == 6 ? 8 : 4);
     if (count < 1 || count > most)
       file.fail(byte, counts[i], std::to_string(count),
-                i < 4 ? "1: a field of one frequency in one plane"
-                      : "a number from 1 to " + std::to_string(most) +
-                            ", which is what a record can hold");
+                i == 0 ? "1: a field of one frequency"
+                       : "a number from 1 to " + std::to_string(most) +
+                             ", which is what a record can hold");
     n[i] = std::size_t(count);
   }
   if (shade.irregular && n[5] != n[6])
@@ -119,15 +132,27 @@ ShadeFile parse_shade_file(std::string_view bytes, const std::string& name) {
   shade.receiver_depths = numbers<float>(file, record.byte(9), n[5], "receiver depths");
   shade.receiver_ranges = ranges(file, record, n[6], wide);
   shade.dialect = wide ? Dialect::wide : Dialect::fortran;
+  const bool one_plane = n[1] == 1 && n[2] == 1 && n[3] == 1;
+  for (const std::size_t i : {1, 2, 3})
+    if (wide && 8 * n[i] > record.length)
+      file.fail(
+          record.byte(3) + 4 * i, counts[i], std::to_string(n[i]),
+          "at most " + std::to_string(record.length / 8) + ", which is what a record can hold");
+  shade.map.azimuths_deg = places(file, record.byte(5), n[1], wide, one_plane, "bearings");
+  shade.map.source_x = places(file, record.byte(6), n[2], wide, one_plane, "source x");
+  shade.map.source_y = places(file, record.byte(7), n[3], wide, one_plane, "source y");
 
   // One record a row. A file may end where its last row has nothing but zeros left.
-  const std::size_t rows = n[4] * shade.rows(), row_bytes = 8 * n[6];
+  const double all_rows =
+      double(n[1]) * double(n[2]) * double(n[3]) * double(n[4]) * double(shade.rows());
+  const std::size_t row_bytes = 8 * n[6];
   const std::size_t whole = (bytes.size() - record.byte(11)) / record.length;
   const std::size_t partial = (bytes.size() - record.byte(11)) % record.length;
-  if (whole + (partial > 0 ? 1 : 0) < rows)
+  if (double(whole + (partial > 0 ? 1 : 0)) < all_rows)
     file.fail(bytes.size(), "pressure",
               "the end of the file after " + std::to_string(whole) + " rows",
-              std::to_string(rows) + " rows");
+              shown(all_rows) + " rows");
+  const std::size_t rows = shade.map.planes() * n[4] * shade.rows();
   shade.pressure.resize(rows * n[6]);
   for (std::size_t i = 0; i < rows; ++i) {
     const std::size_t byte = record.byte(11 + i);
@@ -139,11 +164,14 @@ ShadeFile parse_shade_file(std::string_view bytes, const std::string& name) {
 
 std::string shade_file_bytes(const ShadeFile& shade) {
   const bool wide = shade.dialect == Dialect::wide;
+  const MapPlaces& map = shade.map;
+  const std::size_t words_of_place = wide ? 2 : 1;
   const std::size_t words =
       std::max({std::size_t(41), shade.source_depths.size(), shade.receiver_depths.size(),
-                2 * shade.receiver_ranges.size()});
+                2 * shade.receiver_ranges.size(), words_of_place * map.azimuths_deg.size(),
+                words_of_place * map.source_x.size(), words_of_place * map.source_y.size()});
   const std::size_t length = 4 * words, n_ranges = shade.receiver_ranges.size();
-  const std::size_t rows = shade.source_depths.size() * shade.rows();
+  const std::size_t rows = map.planes() * shade.source_depths.size() * shade.rows();
 
   std::string bytes;
   bytes.reserve(length * (10 + rows));
@@ -154,8 +182,9 @@ std::string shade_file_bytes(const ShadeFile& shade) {
   put_record(bytes, 2, length, shade.irregular ? "irregular " : "rectilin  ");
 
   std::string sizes;
-  for (const std::size_t n : {std::size_t(1), std::size_t(1), std::size_t(1), std::size_t(1),
-                              shade.source_depths.size(), shade.receiver_depths.size(), n_ranges})
+  for (const std::size_t n :
+       {std::size_t(1), map.azimuths_deg.size(), map.source_x.size(), map.source_y.size(),
+        shade.source_depths.size(), shade.receiver_depths.size(), n_ranges})
     put(sizes, static_cast<std::int32_t>(n));
   if (wide) {
     put(sizes, shade.frequency);
@@ -168,7 +197,12 @@ std::string shade_file_bytes(const ShadeFile& shade) {
   std::string frequency;
   put(frequency, shade.frequency);
   put_record(bytes, 4, length, frequency);
-  // records 5 to 7: bearing, source x and y, each one 0
+  const auto put_places = [&](std::size_t k, const std::vector<double>& x) {
+    put_record(bytes, k, length, wide ? vector_bytes<double>(x) : vector_bytes<float>(x));
+  };
+  put_places(5, map.azimuths_deg);
+  put_places(6, map.source_x);
+  put_places(7, map.source_y);
   put_record(bytes, 8, length, vector_bytes<float>(shade.source_depths));
   put_record(bytes, 9, length, vector_bytes<float>(shade.receiver_depths));
   put_record(bytes, 10, length,

@@ -254,6 +254,9 @@ ArrivalDifference compare_arrivals(const bellhop::ArrivalsFile& a, const bellhop
   check_receivers("source depths", a.source_depths, b.source_depths);
   check_receivers("depths", a.receiver_depths, b.receiver_depths);
   check_receivers("ranges", a.receiver_ranges, b.receiver_ranges);
+  check_receivers("azimuths", a.map.azimuths_deg, b.map.azimuths_deg);
+  check_receivers("source x", a.map.source_x, b.map.source_x);
+  check_receivers("source y", a.map.source_y, b.map.source_y);
   if (a.arrivals.size() != b.arrivals.size())
     throw InputError({.where = "receivers",
                       .got = std::to_string(a.arrivals.size()) + " in A, " +
@@ -263,9 +266,11 @@ ArrivalDifference compare_arrivals(const bellhop::ArrivalsFile& a, const bellhop
   const std::size_t rows = b.irregular ? 1 : b.receiver_depths.size();
   Gatherer gatherer(b.frequency, options);
   for (std::size_t i = 0; i < b.arrivals.size(); ++i)
-    gatherer.receiver(
-        a.arrivals[i], b.arrivals[i],
-        {.source = i / (rows * ranges), .row = i / ranges % rows, .range = i % ranges});
+    gatherer.receiver(a.arrivals[i], b.arrivals[i],
+                      {.source = i / (rows * ranges) % b.source_depths.size(),
+                       .row = i / ranges % rows,
+                       .range = i % ranges,
+                       .plane = i / (rows * ranges) / b.source_depths.size()});
   return gatherer.finish();
 }
 

@@ -16,6 +16,7 @@ struct ArrivalOptions {
 /// A path of B that A has not.
 struct MissedPath {
   std::size_t source = 0, row = 0, range = 0;  ///< receiver, as indices into B's axes
+  std::size_t plane = 0;                       ///< of the map (bellhop::MapPlaces)
   double level_db = 0.0;                       ///< re the strongest at that receiver
   bellhop::ArrivalRow path;
 };

@@ -19,10 +19,10 @@ bool same_axis(const std::vector<double>& a, const std::vector<double>& b) {
   return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), same_place);
 }
 
-std::string axis_text(const std::vector<double>& axis) {
+std::string axis_text(const std::vector<double>& axis, const char* unit = " m") {
   std::ostringstream text;
   text << axis.size();
-  if (!axis.empty()) text << " from " << axis.front() << " to " << axis.back() << " m";
+  if (!axis.empty()) text << " from " << axis.front() << " to " << axis.back() << unit;
   return text.str();
 }
 
@@ -31,6 +31,20 @@ InputError grids_differ(const std::string& axis, const std::vector<double>& a,
   return InputError({.where = "grid: " + axis,
                      .got = axis_text(a) + " in A, " + axis_text(b) + " in B",
                      .expected = "the same places (or --resample, when A has all those of B)"});
+}
+
+/// Fields of one map, plane for plane.
+void check_map(const bellhop::MapPlaces& a, const bellhop::MapPlaces& b) {
+  const auto check = [](const char* axis, const std::vector<double>& x,
+                        const std::vector<double>& y, const char* unit) {
+    if (same_axis(x, y)) return;
+    throw InputError({.where = std::string("grid: ") + axis,
+                      .got = axis_text(x, unit) + " in A, " + axis_text(y, unit) + " in B",
+                      .expected = "the same in both"});
+  };
+  check("azimuths", a.azimuths_deg, b.azimuths_deg, " degrees");
+  check("source x", a.source_x, b.source_x, " m");
+  check("source y", a.source_y, b.source_y, " m");
 }
 
 /// Index in `have` of every place that is wanted.
@@ -81,6 +95,7 @@ AlignedFields align(const bellhop::ShadeFile& a, const bellhop::ShadeFile& b, bo
                     .receiver_ranges = b.receiver_ranges,
                     .irregular = b.irregular,
                     .b = b.pressure};
+  check_map(a.map, b.map);
   const bool same = a.irregular == b.irregular && same_axis(a.source_depths, b.source_depths) &&
                     same_axis(a.receiver_depths, b.receiver_depths) &&
                     same_axis(a.receiver_ranges, b.receiver_ranges);
@@ -103,10 +118,13 @@ AlignedFields align(const bellhop::ShadeFile& a, const bellhop::ShadeFile& b, bo
   const auto depth = pick("receiver depths", a.receiver_depths, b.receiver_depths);
   const auto range = pick("receiver ranges", a.receiver_ranges, b.receiver_ranges);
   all.a.reserve(b.pressure.size());
-  for (const std::size_t s : source)
-    for (const std::size_t z : depth)
-      for (const std::size_t r : range)
-        all.a.push_back(a.pressure[(s * a.rows() + z) * a.receiver_ranges.size() + r]);
+  for (std::size_t plane = 0; plane < a.map.planes(); ++plane)
+    for (const std::size_t s : source)
+      for (const std::size_t z : depth)
+        for (const std::size_t r : range)
+          all.a.push_back(a.pressure[((plane * a.source_depths.size() + s) * a.rows() + z) *
+                                         a.receiver_ranges.size() +
+                                     r]);
   return all;
 }
 

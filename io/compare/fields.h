@@ -45,7 +45,7 @@ struct FieldDifference {
 struct AlignedFields {
   std::vector<double> source_depths, receiver_depths, receiver_ranges;  ///< [m], B's
   bool irregular = false;
-  std::vector<std::complex<float>> a, b;  ///< [sources × rows × ranges]
+  std::vector<std::complex<float>> a, b;  ///< [planes × sources × rows × ranges]
 };
 
 /// \throws InputError{where: "grid"} that says which axis differs, where the grids differ (with

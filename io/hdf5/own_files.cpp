@@ -88,8 +88,10 @@ bool shade_file(const fs::path& path) {
 bool arrivals_file(const fs::path& path) {
   const std::string bytes = head(path, 64);
   std::string_view text = bytes;
-  if (text.starts_with(std::string_view("\4\0\0\0", 4))) return has(text, "'2D'");
-  return take_line(text) == "2D";
+  if (text.starts_with(std::string_view("\4\0\0\0", 4)))
+    return has(text, "'2D'") || has(text, "'3D'");
+  const std::string_view dimension = take_line(text);
+  return dimension == "2D" || dimension == "3D";
 }
 
 bool ray_file(const fs::path& path) {

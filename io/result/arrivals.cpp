@@ -22,8 +22,9 @@ double imaginary_delay(double absorption_db, double frequency) {
   return frequency > 0.0 ? -absorption_db / db_per_neper / (2.0 * pi * frequency) : 0.0;
 }
 
-std::vector<GrowingTable::Column> columns() {
-  return {
+/// \param map  whether receivers lie in several planes of a map
+std::vector<GrowingTable::Column> columns(bool map) {
+  std::vector<GrowingTable::Column> all = {
       {"source_index", "index into source_depth", "", Type::int32},
       {"depth_index", "index into depth", "", Type::int32},
       {"range_index", "index into range", "", Type::int32},
@@ -42,6 +43,11 @@ std::vector<GrowingTable::Column> columns() {
       {"delay_imaginary", "amplitude times exp(2 pi f delay_imaginary) has the absorption", "s"},
       {"surface_bounces", "reflections at the surface", "", Type::int32},
       {"bottom_bounces", "reflections at the bottom", "", Type::int32}};
+  if (map)
+    all.insert(all.end(), {{"source_x_index", "index into source_x", "", Type::int32},
+                           {"source_y_index", "index into source_y", "", Type::int32},
+                           {"azimuth_index", "index into azimuth", "", Type::int32}});
+  return all;
 }
 
 /// The columns of a table that are needed here.
@@ -117,7 +123,18 @@ void read_grid(const Hdf5File& file, const Table& table, ArrivalsFile& result) {
       file.has_attribute("", "irregular") && file.attribute_number("", "irregular") != 0.0;
   const std::size_t rows = result.irregular ? 1 : result.receiver_depths.size();
   const std::size_t ranges = result.receiver_ranges.size();
-  result.arrivals.resize(result.source_depths.size() * rows * ranges);
+  std::vector<double> source_x, source_y, azimuth;
+  if (table.has("azimuth_index")) {
+    result.three_dimensional = true;
+    result.map = {.source_x = axis("source_x"),
+                  .source_y = axis("source_y"),
+                  .azimuths_deg = axis("azimuth")};
+    source_x = table.column("source_x_index");
+    source_y = table.column("source_y_index");
+    azimuth = table.column("azimuth_index");
+  }
+  const bellhop::MapPlaces& map = result.map;
+  result.arrivals.resize(map.planes() * result.source_depths.size() * rows * ranges);
   const auto source = table.column("source_index"), depth = table.column("depth_index"),
              range = table.column("range_index"), amplitude = table.column("amplitude"),
              phase = table.column("phase_deg"), imaginary = table.column("delay_imaginary");
@@ -134,7 +151,14 @@ void read_grid(const Hdf5File& file, const Table& table, ArrivalsFile& result) {
     const std::size_t s = index("source_index", source[i], result.source_depths.size());
     const std::size_t z = index("depth_index", depth[i], rows);
     const std::size_t r = index("range_index", range[i], ranges);
-    result.arrivals[(s * rows + z) * ranges + r].push_back(row);
+    std::size_t plane = 0;
+    if (result.three_dimensional)
+      plane = (index("source_x_index", source_x[i], map.source_x.size()) * map.source_y.size() +
+               index("source_y_index", source_y[i], map.source_y.size())) *
+                  map.azimuths_deg.size() +
+              index("azimuth_index", azimuth[i], map.azimuths_deg.size());
+    result.arrivals[((plane * result.source_depths.size() + s) * rows + z) * ranges + r].push_back(
+        row);
   }
 }
 
@@ -173,18 +197,47 @@ void write_arrivals(Hdf5File& file, const ArrivalsFile& arrivals) {
               "horizontal distance from the source", "m", cf::range_axis);
   const std::size_t ranges = arrivals.receiver_ranges.size();
   const std::size_t rows = arrivals.irregular ? 1 : arrivals.receiver_depths.size();
-  GrowingTable table(file, "arrivals", "arrival", columns());
+  const bellhop::MapPlaces& map = arrivals.map;
+  if (arrivals.three_dimensional) {
+    write_scale(file, "source_x", "source_x", map.source_x, "place of the source, to the east",
+                "m");
+    write_scale(file, "source_y", "source_y", map.source_y, "place of the source, to the north",
+                "m");
+    write_scale(file, "azimuth", "azimuth", map.azimuths_deg,
+                "of the line of receivers, counter-clockwise from east; bearing = 90 - azimuth",
+                "degree");
+  }
+  GrowingTable table(file, "arrivals", "arrival", columns(arrivals.three_dimensional));
   const double w = 2.0 * pi * arrivals.frequency;
   for (std::size_t i = 0; i < arrivals.arrivals.size(); ++i)
     for (const ArrivalRow& a : arrivals.arrivals[i]) {
       const std::complex<double> pressure =
           std::polar(a.amplitude * std::exp(w * a.delay_imaginary), radians(a.phase_deg));
-      table.row({static_cast<double>(i / (rows * ranges)), static_cast<double>(i / ranges % rows),
-                 static_cast<double>(i % ranges), arrivals.receiver_ranges[i % ranges],
-                 -a.launch_angle_deg, -a.arrival_angle_deg, a.launch_deflection_deg,
-                 a.arrival_deflection_deg, a.delay, pressure.real(), pressure.imag(),
-                 -w * a.delay_imaginary * db_per_neper, a.amplitude, a.phase_deg, a.delay_imaginary,
-                 double(a.surface_bounces), double(a.bottom_bounces)});
+      const std::size_t source = i / (rows * ranges), sources = arrivals.source_depths.size();
+      std::vector<double> cells = {static_cast<double>(source % sources),
+                                   static_cast<double>(i / ranges % rows),
+                                   static_cast<double>(i % ranges),
+                                   arrivals.receiver_ranges[i % ranges],
+                                   -a.launch_angle_deg,
+                                   -a.arrival_angle_deg,
+                                   a.launch_deflection_deg,
+                                   a.arrival_deflection_deg,
+                                   a.delay,
+                                   pressure.real(),
+                                   pressure.imag(),
+                                   -w * a.delay_imaginary * db_per_neper,
+                                   a.amplitude,
+                                   a.phase_deg,
+                                   a.delay_imaginary,
+                                   double(a.surface_bounces),
+                                   double(a.bottom_bounces)};
+      if (arrivals.three_dimensional) {
+        const std::size_t azimuths = map.azimuths_deg.size(), place = source / sources / azimuths;
+        cells.insert(cells.end(), {static_cast<double>(place / map.source_y.size()),
+                                   static_cast<double>(place % map.source_y.size()),
+                                   static_cast<double>(source / sources % azimuths)});
+      }
+      table.row(cells);
     }
   table.write();
 }

@@ -78,6 +78,16 @@ void write_field(Hdf5File& file, const FieldData& field) {
   const std::size_t sources = field.source_depths.size();
   Shape shape = {sources, grid.depths.size(), grid.ranges.size(), 2};
   std::vector<std::string> scales = {"source_depth", "depth", "range", "re_im"};
+  const bellhop::MapPlaces& map = field.map;
+  if (map.is_map()) {
+    write_scale(file, "source_x", "source_x", map.source_x, "place of the source, to the east",
+                "m");
+    write_scale(file, "source_y", "source_y", map.source_y, "place of the source, to the north",
+                "m");
+    write_scale(file, "azimuth", "azimuth", map.azimuths_deg,
+                "of the line of receivers, counter-clockwise from east; bearing = 90 - azimuth",
+                "degree");
+  }
   if (grid.irregular) {
     std::vector<std::int32_t> numbers(grid.ranges.size());
     std::iota(numbers.begin(), numbers.end(), 0);
@@ -92,6 +102,11 @@ void write_field(Hdf5File& file, const FieldData& field) {
                 cf::depth_axis);
     write_scale(file, "range", "range", grid.ranges, "horizontal distance from the source", "m",
                 cf::range_axis);
+  }
+  if (map.is_map()) {
+    shape.insert(shape.begin(),
+                 {map.source_x.size(), map.source_y.size(), map.azimuths_deg.size()});
+    scales.insert(scales.begin(), {"source_x", "source_y", "azimuth"});
   }
   std::vector<float> parts;
   parts.reserve(2 * field.pressure.size());
@@ -136,9 +151,17 @@ FieldData read_field(const Hdf5File& file) {
   grid.ranges = axis(file, grid.irregular ? "receiver_range" : "range");
   if (!file.has("pressure")) throw wrong(file, "pressure", "nothing", "a dataset");
   const Shape shape = file.info("pressure").shape;
-  const Shape expected =
+  Shape expected =
       grid.irregular ? Shape{field.source_depths.size(), grid.ranges.size(), 2}
                      : Shape{field.source_depths.size(), grid.depths.size(), grid.ranges.size(), 2};
+  if (file.has("azimuth")) {
+    bellhop::MapPlaces& map = field.map;
+    map = {.source_x = axis(file, "source_x"),
+           .source_y = axis(file, "source_y"),
+           .azimuths_deg = axis(file, "azimuth")};
+    expected.insert(expected.begin(),
+                    {map.source_x.size(), map.source_y.size(), map.azimuths_deg.size()});
+  }
   if (shape != expected || (grid.irregular && grid.depths.size() != grid.ranges.size()))
     throw wrong(file, "pressure", "a shape that does not fit its axes",
                 "(source_depth, depth, range, re_im)");
@@ -164,7 +187,8 @@ bellhop::ShadeFile to_shade_file(const FieldData& field) {
                           .source_depths = field.source_depths,
                           .receiver_depths = field.receivers.depths,
                           .receiver_ranges = field.receivers.ranges,
-                          .pressure = field.pressure};
+                          .pressure = field.pressure,
+                          .map = field.map};
   if (field.source == SourceKind::point)
     for (std::complex<float>& p : file.pressure) p = -p;
   return file;
@@ -177,7 +201,8 @@ FieldData from_shade_file(const bellhop::ShadeFile& file) {
                   .receivers = {.depths = file.receiver_depths,
                                 .ranges = file.receiver_ranges,
                                 .irregular = file.irregular},
-                  .pressure = file.pressure};
+                  .pressure = file.pressure,
+                  .map = file.map};
   for (std::complex<float>& p : field.pressure) p = -p;
   if (std::all_of(field.pressure.begin(), field.pressure.end(),
                   [](std::complex<float> p) { return p.imag() == 0.0f; }))

@@ -19,7 +19,7 @@ struct FieldData {
   SourceKind source = SourceKind::point;
   std::vector<double> source_depths;  ///< [m]
   ReceiverGrid receivers;
-  std::vector<std::complex<float>> pressure;  ///< [sources × rows × ranges], range fastest
+  std::vector<std::complex<float>> pressure;  ///< [planes × sources × rows × ranges]
   std::string beam_kind;                      ///< "hat", "gaussian" …; empty: not known
   std::size_t beams = 0;                      ///< rays traced per source; 0: not known
   double beam_error_db = 0.0;       ///< what more beams would change, at 95 % of receivers
@@ -27,7 +27,8 @@ struct FieldData {
   std::vector<float> beam_errors;  ///< [sources × rows × ranges] the same of each receiver [dB], ∞
                                    ///< where no number bounds it, NaN where it is not known;
                                    ///< empty: not known of any (PropagationResult::beam_errors)
-  std::string solver;  ///< "beams" or "waves"; empty: not known
+  std::string solver;           ///< "beams" or "waves"; empty: not known
+  bellhop::MapPlaces map = {};  ///< of a field over a map: its planes
 };
 
 /// Writes the datasets and attributes of docs/formats/field.md, but for the root's (filetype,

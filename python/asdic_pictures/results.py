@@ -44,6 +44,9 @@ class Field:
     errors: np.ndarray | None = None    # [sources, …] of the number of beams [dB], NaN: not known
     sure_db: float = 0.5                # a receiver with no more error than this is sure
     tags: dict = field(default_factory=dict)
+    azimuths: np.ndarray | None = None  # [n] of a field over a map, counter-clockwise from x [°]
+    around: np.ndarray | None = None    # [n, sources, …] its pressures, of its first place of sources
+    places: int = 1                     # of sources on the map
 
     def unsure(self, source: int) -> np.ndarray | None:
         """Which receivers are not sure of their number of beams; None where that is not told. A
@@ -264,9 +267,16 @@ def read_field(reader: Reader) -> Field:
     irregular = reader.has("receiver")
     prefix = "receiver_" if irregular else ""
     parts = reader.array("pressure")
-    if parts.ndim != (3 if irregular else 4) or parts.shape[-1] != 2 or 0 in parts.shape:
+    azimuths = reader.array("azimuth") if reader.has("azimuth") else None
+    dims = (3 if irregular else 4) + (0 if azimuths is None else 3)
+    if parts.ndim != dims or parts.shape[-1] != 2 or 0 in parts.shape:
         raise InputError(reader.path, f"pressure of shape {parts.shape}",
                          "(source_depth, depth, range, re_im)")
+    around, places = None, 1
+    if azimuths is not None:
+        places = parts.shape[0] * parts.shape[1]
+        around = parts[0, 0, ..., 0] + 1j * parts[0, 0, ..., 1]
+        parts = parts[0, 0, 0]
     how = [text(reader.file.attrs, "field") or "coherent"]
     if text(reader.file.attrs, "solver") == "waves":
         how.append("wave equation")
@@ -279,7 +289,7 @@ def read_field(reader: Reader) -> Field:
     return Field(reader.title(), reader.number("frequency_hz"), reader.array("source_depth"),
                  reader.array(prefix + "depth"), reader.array(prefix + "range"), irregular,
                  parts[..., 0] + 1j * parts[..., 1], ", ".join(how), reader.sea(), errors,
-                 reader.number("sure_db", 0.5))
+                 reader.number("sure_db", 0.5), azimuths=azimuths, around=around, places=places)
 
 
 LEGS = {0: "source to target", 1: "target to array", 2: "source to array", 3: "source to receiver"}
@@ -294,7 +304,10 @@ def read_arrivals(reader: Reader) -> Arrivals:
         level = 20.0 * np.log10(amplitude)
     distance = column("range")
     if reader.has("arrivals/range_index"):
-        keys = np.stack([column(n) for n in ("source_index", "depth_index", "range_index")], axis=1)
+        names = ["source_index", "depth_index", "range_index"]
+        if reader.has("arrivals/azimuth_index"):
+            names += ["azimuth_index", "source_x_index", "source_y_index"]
+        keys = np.stack([column(n) for n in names], axis=1)
     else:
         keys = np.stack([column(n) for n in ("ping", "leg", "target", "channel")], axis=1)
     receivers = []
@@ -318,6 +331,11 @@ def receiver_label(reader: Reader, key, distance: float) -> str:
     depths, sources = reader.array("depth"), reader.array("source_depth")
     i = int(key[2] if reader.number("irregular", 0.0) else key[1])
     source = f", source at {sources[int(key[0])]:g} m" if sources.size > 1 else ""
+    if len(key) == 6:
+        where += f", azimuth {reader.array('azimuth')[int(key[3])]:g}°"
+        x, y = reader.array("source_x"), reader.array("source_y")
+        if x.size * y.size > 1:
+            source += f", source at x {x[int(key[4])] / 1e3:g} km, y {y[int(key[5])] / 1e3:g} km"
     return f"{where}, depth {depths[i]:g} m{source}"
 
 

@@ -17,6 +17,8 @@ def hatching():
 
 
 def nothing_to_show(field) -> str | None:
+    if field.around is not None and np.abs(field.around).max() > 0.0:
+        return None
     return None if np.isfinite(field.tl(0)).any() else "no sound arrives anywhere"
 
 
@@ -95,6 +97,9 @@ def describe(field, source: int) -> str:
     several = len(sea.profiles(field.sea)) if field.sea.sound_speed is not None else 1
     water = "" if several == 1 else f"  ·  the water varies with range: {several} profiles"
     title = f"{field.title}  ·  " if field.title else ""
+    if field.azimuths is not None:
+        water += (f"  ·  azimuth {field.azimuths[0]:g}°"
+                  + (f", the first of {field.azimuths.size}" if field.azimuths.size > 1 else ""))
     return (f"{title}{field.frequency:g} Hz, source at {field.source_depths[source]:g} m, "
             f"{field.how}{water}")
 
@@ -142,8 +147,40 @@ def draw_curves(field, source: int, axes=None, given=None):
     return fig
 
 
+FEWEST_AROUND = 3       # azimuths that are drawn from above
+
+
+def draw_from_above(field, source: int, axes=None, given=None):
+    """Receivers at the depth nearest to the source's, around the source: x to the right, y up."""
+    row = int(np.abs(field.depth - field.source_depths[source]).argmin())
+    magnitude = np.abs(field.around[:, source] if field.irregular else field.around[:, source, row])
+    with np.errstate(divide="ignore"):
+        values = -20.0 * np.log10(magnitude)
+    values[~np.isfinite(values)] = np.nan
+    fig, axes = style.figure("Transmission loss from above", 7.0, axes)
+    low, high = given or colour_limits(values)
+    turn, out = np.radians(edges(field.azimuths)), np.maximum(edges(field.range), 0.0) / 1e3
+    mesh = axes.pcolormesh(np.outer(np.cos(turn), out), np.outer(np.sin(turn), out), values,
+                           cmap=style.LOSS_MAP, vmin=low, vmax=high, rasterized=True)
+    style.image_frame(axes)
+    axes.set_facecolor(style.PAPER)
+    axes.set_aspect("equal")
+    axes.plot(0.0, 0.0, marker="D", ms=7, mfc=style.INK, mec=style.PAPER, mew=1.2, zorder=6)
+    axes.set_xlabel("x from the source / km")
+    axes.set_ylabel("y from the source / km")
+    loss_bar(fig, mesh, axes)
+    title = f"{field.title}  ·  " if field.title else ""
+    places = f", the first of {field.places} places" if field.places > 1 else ""
+    where = "receivers as listed" if field.irregular else f"receivers at {field.depth[row]:g} m"
+    style.subtitle(axes, f"{title}{field.frequency:g} Hz, source at {field.source_depths[source]:g} m"
+                         f"{places}, {where}, {field.azimuths.size} azimuths, {field.how}")
+    return fig
+
+
 @style.picture
 def draw(field, source: int = 0, axes=None, limits=None):
+    if field.azimuths is not None and field.azimuths.size >= FEWEST_AROUND:
+        return draw_from_above(field, source, axes, limits)
     if not field.irregular and field.depth.size <= MOST_CURVES:
         return draw_curves(field, source, axes, limits)
     fig, axes = sea.figure(TITLE, field.sea, axes=axes)

@@ -468,9 +468,9 @@ TEST(BellhopCase, EveryMalformedLineIsTold) {
       {2, "-5 /", "case.env:2: frequency: found -5 Hz, expected a frequency above 0 Hz"},
       {3, "2", "case.env:3: number of media: found 2, expected 1: rays know one medium"},
       {3, "1.5", "case.env:3: number of media: found \"1.5\", expected a whole number"},
-      {4, "'HVW'",
-       "case.env:4: top options: letter 1: found \"H\", expected N (1/c^2 linear), C (c linear), P "
-       "(PCHIP), S (spline), Q (range-dependent) or A (Munk)"},
+      {4, "'ZVW'",
+       "case.env:4: top options: letter 1: found \"Z\", expected N (1/c^2 linear), C (c linear), P "
+       "(PCHIP), S (spline), Q (range-dependent), A (Munk) or, over a map, H (hexahedral)"},
       {4, "'CWW'",
        "case.env:4: top options: letter 2: found \"W\", expected V (vacuum), R (rigid), A (half "
        "space), F (table) or G (grain size)"},

@@ -170,8 +170,7 @@ TEST(BellhopFiles, MalformedFieldsAreTold) {
       "file: byte 164: plot type: found \"xectilin\", expected \"rectilin\" or \"irregular\"");
   EXPECT_EQ(
       with(328, 7),
-      "file: byte 328: number of frequencies: found 7, expected 1: a field of one frequency in "
-      "one plane");
+      "file: byte 328: number of frequencies: found 7, expected 1: a field of one frequency");
   EXPECT_EQ(with(352, 1'000'000),
             "file: byte 352: number of receiver ranges: found 1000000, expected a number from 1 to "
             "20, which is what a record can hold");
@@ -182,9 +181,9 @@ TEST(BellhopFiles, MalformedFieldsAreTold) {
 }
 
 TEST(BellhopFiles, MalformedArrivalsAndRaysAreTold) {
-  EXPECT_EQ(complaint(parse_arrivals_file, ""), "file:1: dimension: found \"\", expected '2D'");
-  EXPECT_EQ(complaint(parse_arrivals_file, " '3D'\n"),
-            "file:1: dimension: found \"'3D'\", expected '2D'");
+  EXPECT_EQ(complaint(parse_arrivals_file, ""), "file:1: dimension: found \"\", expected '2D' or '3D'");
+  EXPECT_EQ(complaint(parse_arrivals_file, " '4D'\n"),
+            "file:1: dimension: found \"'4D'\", expected '2D' or '3D'");
   EXPECT_EQ(complaint(parse_arrivals_file, " '2D'\n 100\n 1 2\n 1 x\n"),
             "file:4: receiver depths: found \"x\", expected a number");
   EXPECT_EQ(complaint(parse_arrivals_file, " '2D'\n 100\n 1 2\n 1 3\n 1 4\n 1\n -1\n"),
