@@ -271,7 +271,8 @@ bool MapInput::shines_at(double azimuth_deg) const noexcept {
   return std::abs(from_middle) <= 0.5 * spread + margin_deg() + 1e-9;
 }
 
-bool is_over_map(ListReader env) {
+bool is_over_map(const CaseReading& reading) {
+  ListReader env = reading.env;
   try {
     env.begin("bottom options");
     std::string letters;
@@ -284,6 +285,10 @@ bool is_over_map(ListReader env) {
       env.end();
     }
     for (int i = 0; i < 3; ++i) skip_vector(env);
+  } catch (const InputError&) {  // told when it is read
+    return reading.options.profile == 'H';
+  }
+  try {
     env.begin("run type, or a fourth vector");
     return env.need_integer("", 1, most_map_places) > 0;
   } catch (const InputError&) {
@@ -355,6 +360,11 @@ void read_map_case(CaseReading& reading) {
                            "azimuth; ") +
                (reading.run_case().dimension == 3 ? "rays in three dimensions"
                                                   : "a run in the plane of every azimuth (Nx2D)"));
+  if (reading.run_case().dimension == 3 && map.area)
+    reading.note(
+        "three dimensions take from a tenth of a second to minutes a receiver, most over "
+        "facets and under profiles of several rows; planes (run type letter 6 \"2\") a "
+        "fraction of that");
   note_short_map(reading);
   note_azimuths(reading);
   reading.run_case() = on_plane(reading.input, 0);

@@ -85,7 +85,7 @@ void read_run(CaseReading& reading);  ///< run type, fan, step, box, Cerveny's l
 // case_map.cpp
 /// Whether the lines from the bottom options on are those of BELLHOP3D: six vectors, where BELLHOP
 /// has three. The reader stays where it is.
-[[nodiscard]] bool is_over_map(ListReader env);
+[[nodiscard]] bool is_over_map(const CaseReading& reading);
 /// \throws InputError  profile H in a case of one plane
 void require_profile_of_a_plane(const CaseReading& reading);
 /// All from the bottom options on, with the files of the map.

@@ -45,7 +45,7 @@ Input read_case(const Texts& texts, const std::string& root_name) {
       .env = ListReader(texts.env, root_name + ".env"), .root = root_name, .texts = texts};
   read_head(reading);
   read_profile(reading);
-  if (is_over_map(reading.env)) {
+  if (is_over_map(reading)) {
     read_map_case(reading);
   } else {
     require_profile_of_a_plane(reading);

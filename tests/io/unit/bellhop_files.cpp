@@ -168,9 +168,8 @@ TEST(BellhopFiles, MalformedFieldsAreTold) {
   EXPECT_EQ(
       with(164, 'x'),
       "file: byte 164: plot type: found \"xectilin\", expected \"rectilin\" or \"irregular\"");
-  EXPECT_EQ(
-      with(328, 7),
-      "file: byte 328: number of frequencies: found 7, expected 1: a field of one frequency");
+  EXPECT_EQ(with(328, 7),
+            "file: byte 328: number of frequencies: found 7, expected 1: a field of one frequency");
   EXPECT_EQ(with(352, 1'000'000),
             "file: byte 352: number of receiver ranges: found 1000000, expected a number from 1 to "
             "20, which is what a record can hold");
@@ -181,7 +180,8 @@ TEST(BellhopFiles, MalformedFieldsAreTold) {
 }
 
 TEST(BellhopFiles, MalformedArrivalsAndRaysAreTold) {
-  EXPECT_EQ(complaint(parse_arrivals_file, ""), "file:1: dimension: found \"\", expected '2D' or '3D'");
+  EXPECT_EQ(complaint(parse_arrivals_file, ""),
+            "file:1: dimension: found \"\", expected '2D' or '3D'");
   EXPECT_EQ(complaint(parse_arrivals_file, " '4D'\n"),
             "file:1: dimension: found \"'4D'\", expected '2D' or '3D'");
   EXPECT_EQ(complaint(parse_arrivals_file, " '2D'\n 100\n 1 2\n 1 x\n"),
