@@ -8,6 +8,7 @@
 #include "app/output.h"
 #include "core/error.h"
 #include "io/bellhop/case_writer.h"
+#include "io/bellhop/map_scenario.h"
 #include "io/hdf5/own_files.h"
 #include "io/result/write_result.h"
 #include "io/scenario/propagation.h"
@@ -37,10 +38,16 @@ std::string extension_of(const std::string& name) {
 
 std::vector<std::string> env_to_toml(const ConvertOptions& options) {
   const bellhop::Input input = bellhop::read_case(std::filesystem::path(options.input));
-  bellhop::require_one_plane(input);
-  OutputFile(options.output, rules_for(options.output, options.force))
-      .write(std::string("# ") + own::remark + " convert.\n" + to_toml(input.run_case));
-  return input.notes;
+  const std::filesystem::path maps = std::filesystem::path(options.output).replace_extension(".nc");
+  const bellhop::MapScenario made = bellhop::map_scenario(input, maps.string());
+  OutputFile scenario(options.output, rules_for(options.output, options.force));
+  if (made.maps)
+    bellhop::write_maps(OutputFile(maps, {.own = own::hdf5, .force = options.force}), input);
+  scenario.write(std::string("# ") + own::remark + " convert.\n" + to_toml(made.run_case));
+  std::vector<std::string> notes = input.notes;
+  notes.insert(notes.end(), made.notes.begin(), made.notes.end());
+  if (made.maps) notes.push_back("the maps of the scenario are in " + maps.string());
+  return notes;
 }
 
 std::vector<std::string> toml_to_env(const ConvertOptions& options) {
@@ -122,7 +129,11 @@ void add_convert_command(Program& program) {
                "arrivals as text; by default as the input had them");
         command.add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
         add_force_option(command, options->force);
-        command.footer("Example:  asdic convert munk.env munk.toml");
+        command.footer(
+            "A case of BELLHOP3D becomes the scenario of its first azimuth; its maps go beside it, "
+            "in\n"
+            "NAME.nc.\n"
+            "Example:  asdic convert munk.env munk.toml");
         command.runs([options] { return convert(*options); });
       });
 }

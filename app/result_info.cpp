@@ -140,6 +140,17 @@ std::string certainty(const Hdf5File& file) {
   return text;
 }
 
+/// Of a .shd or .arr with the layout that asdic gives those of BELLHOP3D.
+std::string layout_line(const PropagationFile& result) {
+  const auto* field = std::get_if<bellhop::ShadeFile>(&result);
+  const auto* arrivals = std::get_if<bellhop::ArrivalsFile>(&result);
+  if (!(field != nullptr && field->map.is_map()) &&
+      !(arrivals != nullptr && arrivals->three_dimensional))
+    return "";
+  return "layout     as asdic writes it; that BELLHOP3D's own files of many azimuths are alike is\n"
+         "           not confirmed (docs/formats/bellhop3d.md)\n";
+}
+
 std::string file_line(const std::string& path, std::string_view kind) {
   return fmt::format("file       {}, {}, {}\n", path,
                      byte_count(static_cast<double>(std::filesystem::file_size(path))), kind);
@@ -163,6 +174,8 @@ int propagation_info(const std::string& path) {
     const Hdf5File file = Hdf5File::open(path);
     title = file.attribute_or("", "title", title);
     about = certainty(file) + origin(file);
+  } else {
+    about = layout_line(result);
   }
   print(emphasised(title.empty() ? path : title) + '\n');
   print(file_line(path, kind_of(result)));

@@ -1,6 +1,8 @@
 #include "asdic/bellhop.h"
 
 #include "io/bellhop/case_reader.h"
+#include "io/bellhop/map_scenario.h"
+#include "io/hdf5/own_files.h"
 #include "io/result/write_result.h"
 #include "io/scenario/writer.h"
 #include "library/propagation.h"
@@ -8,18 +10,30 @@
 
 namespace asdic {
 
-BellhopCase read_bellhop(const std::filesystem::path& root) {
+BellhopCase read_bellhop(const std::filesystem::path& root, const std::filesystem::path& maps) {
   std::filesystem::path name = root;
   if (name.extension() == ".env") name.replace_extension();
   return translated(
       [&] {
-        const detail::bellhop::Input input = detail::bellhop::read_case(name);
-        detail::bellhop::require_one_plane(input);
+        namespace bellhop = detail::bellhop;
+        const bellhop::Input input = bellhop::read_case(name);
+        const bellhop::MapScenario made =
+            bellhop::map_scenario(input, std::filesystem::absolute(maps).string());
+        if (made.maps) {
+          if (maps.empty())
+            throw detail::InputError(
+                {.where = input.file,
+                 .got = "a case of BELLHOP3D, over a map",
+                 .expected = "\"maps\", the name of a file (.nc) where its maps go"});
+          bellhop::write_maps(detail::OutputFile(maps, {.own = detail::own::hdf5}), input);
+        }
+        std::vector<std::string> notes = input.notes;
+        notes.insert(notes.end(), made.notes.begin(), made.notes.end());
         return BellhopCase{
-            .scenario = Scenario::parse(detail::to_toml(input.run_case), name.string() + ".toml"),
-            .notes = input.notes};
+            .scenario = Scenario::parse(detail::to_toml(made.run_case), name.string() + ".toml"),
+            .notes = std::move(notes)};
       },
-      {root});
+      {root, maps});
 }
 
 std::vector<std::string> write_run(const std::filesystem::path& path, const Scenario& scenario,

@@ -27,9 +27,14 @@ struct BellhopCase {
   std::vector<std::string> notes{};  ///< what the reader did that one should know
 };
 
-/// Reads ROOT.env and the files beside it. \param root  with or without .env
+/// Reads ROOT.env and the files beside it. A case of BELLHOP3D becomes the scenario of its first
+/// plane, in an area whose maps are in a file (docs/formats/bellhop3d.md).
+/// \param root  with or without .env
+/// \param maps  where that file goes; only a case over a map needs one. A file that asdic did not
+/// write is not written over
 /// \throws InputError "case.env:12: …", RunError
-[[nodiscard]] ASDIC_API BellhopCase read_bellhop(const std::filesystem::path& root);
+[[nodiscard]] ASDIC_API BellhopCase read_bellhop(const std::filesystem::path& root,
+                                                 const std::filesystem::path& maps = {});
 
 /// Does what [run] of a scenario asks for, a field, arrivals or rays, and writes it: HDF5
 /// (docs/formats/field.md, arrivals.md, rays.md) or, by the name's ending, .shd, .arr or .ray. A

@@ -215,6 +215,16 @@ std::optional<double> azimuth_at(const ArrivalsFile& file, std::size_t i) {
   return file.map.azimuths_deg[i / (file.rows() * file.receiver_ranges.size())];
 }
 
+/// In a layout of three dimensions that no document tells, an azimuth may stand where a declination
+/// is looked for.
+template <class Source>
+void check_declinations(Source& source, const ArrivalRow& a) {
+  for (const auto& [item, angle] :
+       {std::pair{"launch angle", a.launch_angle_deg}, {"arrival angle", a.arrival_angle_deg}})
+    if (!(std::abs(angle) <= 180.0))
+      source.fail(item, shown(angle) + " degrees", "a declination from -180 to 180 degrees");
+}
+
 /// Nothing in the file says whether the grid is irregular: one row then instead of one a depth.
 template <class Source>
 ArrivalsFile parse(Source source, bool binary, bool irregular) {
@@ -241,7 +251,7 @@ ArrivalsFile parse(Source source, bool binary, bool irregular) {
     file.arrivals.resize(std::size_t(receivers));
   }
   for (std::size_t s = 0; s < sources_of(file); ++s) {
-    (void)source.count("largest number of arrivals");
+    const std::int64_t largest = source.count("largest number of arrivals");
     if (!file.three_dimensional) {
       for (std::size_t i = 0; i < file.rows(); ++i)
         for (std::size_t j = 0; j < file.receiver_ranges.size(); ++j) {
@@ -254,8 +264,15 @@ ArrivalsFile parse(Source source, bool binary, bool irregular) {
     const std::vector<std::size_t> places = receivers_of(file, s);
     for (std::size_t i = 0; i < places.size(); ++i) {
       const std::int64_t n = source.count("number of arrivals");
+      if (n > largest)
+        source.fail("number of arrivals", std::to_string(n),
+                    "at most " + std::to_string(largest) +
+                        ", the largest number that stands before its source's receivers");
       std::vector<ArrivalRow>& rows_here = file.arrivals[places[i]];
-      for (std::int64_t k = 0; k < n; ++k) rows_here.push_back(source.row(azimuth_at(file, i)));
+      for (std::int64_t k = 0; k < n; ++k) {
+        rows_here.push_back(source.row(azimuth_at(file, i)));
+        check_declinations(source, rows_here.back());
+      }
     }
   }
   if (!source.at_end())

@@ -111,6 +111,20 @@ GridFile level_floor(const GridFile& water, double depth) {
           .values = std::vector<double>(4, depth)};
 }
 
+/// A grid of as many x as y fits turned, too, and no document tells which way it stands.
+void note_order(CaseReading& reading, const std::string& file, const GridFile& grid) {
+  const std::size_t n = grid.x.size();
+  if (grid.y.size() != n) return;
+  bool turned_alike = grid.x == grid.y;
+  for (std::size_t j = 0; turned_alike && j < n; ++j)
+    for (std::size_t i = 0; i < j; ++i)
+      turned_alike = turned_alike && grid.values[j * n + i] == grid.values[i * n + j];
+  if (!turned_alike)
+    reading.note(file +
+                 ": a row of depths is taken for one y, and its numbers for the x; no document "
+                 "tells whether BELLHOP3D does so, and this grid would fit the other way, too");
+}
+
 void read_altimetry(CaseReading& reading) {
   MapInput& map = *reading.input.map;
   const std::string file = reading.root + ".ati";
@@ -120,6 +134,7 @@ void read_altimetry(CaseReading& reading) {
     reading.ocean().surface.depth = map.altimetry->values.front();
     return;
   }
+  note_order(reading, file, *map.altimetry);
   check_sources_on_grid(reading, file, *map.altimetry);
 }
 
@@ -133,6 +148,7 @@ void read_bathymetry(CaseReading& reading) {
     return;
   }
   check_sources_on_grid(reading, file, *map.bathymetry);
+  note_order(reading, file, *map.bathymetry);
   if (map.bathymetry->curvilinear)
     reading.note(file +
                  ": type C is a bicubic surface through the depths here; BELLHOP3D keeps "
@@ -154,6 +170,9 @@ void read_water(CaseReading& reading) {
   const std::string file = reading.root + ".ssp";
   map.water = read_grid_file(reading.companion(".ssp", "H"), true);
   check_sources_on_grid(reading, file, *map.water);
+  reading.note(file +
+               ": a row of speeds is taken for one y of one depth, and its numbers for the x, all "
+               "rows of a depth together; no document tells whether BELLHOP3D does so");
   reading.note(file +
                ": speeds run as cubics between the places of the grid, so that gradients are "
                "continuous; BELLHOP3D's are linear along each axis (H), and differ the less the "

@@ -104,6 +104,7 @@ void read_receivers(CaseReading& reading);  ///< sources, receivers
 struct GivenVector {
   std::vector<double> values;  ///< as given
   std::int64_t count = 0;      ///< as announced
+  std::string left = {};       ///< a number more that stands on its last line, and is dropped
   [[nodiscard]] bool are_ends() const noexcept { return values.size() == 2 && count > 2; }
 };
 /// Reads the values of a vector of `count`. \throws InputError if there are neither all, two nor

@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::int64_t most_beams = 10'000'000;
 constexpr double most_receivers = 2e9;
+constexpr std::size_t most_planes = 1'000'000;
 
 BeamKind beam_kind(CaseReading& reading, char letter) {
   switch (letter) {
@@ -92,6 +93,11 @@ void read_run_type(CaseReading& reading) {
                  std::to_string(grid.ranges.size()) + " ranges",
              "as many depths as ranges on an irregular grid (I)");
   const double planes = reading.input.map ? double(reading.input.map->planes()) : 1.0;
+  if (planes > double(most_planes))
+    env.fail("",
+             std::to_string(reading.input.map->planes()) +
+                 " places of sources and azimuths of receivers",
+             "at most " + std::to_string(most_planes) + ", each with a plane of its own");
   if (const double all = planes * double(run_case.source_depths.size()) * double(grid.size());
       all > most_receivers)
     env.fail("", shown(all) + " receivers", "at most " + shown(most_receivers));

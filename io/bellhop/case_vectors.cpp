@@ -45,6 +45,7 @@ GivenVector read_vector(ListReader& from, std::int64_t count, const std::string&
   if (n == 0 || (n != std::size_t(count) && n > 2))
     from.fail("", std::to_string(n) + " values",
               std::to_string(count) + ", or the two ends of a vector evenly spaced, or one");
+  given.left = from.number_left();
   from.end();
   return given;
 }

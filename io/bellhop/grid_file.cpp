@@ -20,6 +20,9 @@ std::vector<double> read_grid_axis(ListReader& file, const std::string& name, co
   const std::int64_t n = file.need_integer("", 2, most_grid_places);
   file.end();
   const GivenVector given = read_vector(file, n, name);
+  if (!given.left.empty())
+    file.fail("", shown(given.left) + " after " + std::to_string(n) + " numbers",
+              "as many as the line above says");
   std::vector<double> axis = given.values;
   if (given.are_ends()) {
     axis.clear();
@@ -38,6 +41,52 @@ std::vector<double> read_grid_axis(ListReader& file, const std::string& name, co
 void check_grid_size(const ListReader& file, double values) {
   if (values > double(most_grid_values))
     file.fail("", shown(values) + " values", "at most " + shown(double(most_grid_values)));
+}
+
+/// How many numbers stand on the lines of a file's rows.
+struct LinesOfRows {
+  bool alike = true;       ///< every line has as many as the first
+  std::size_t on_one = 0;  ///< numbers on the first line
+  bool broken = false;     ///< a row goes over several lines
+
+  void add(std::size_t numbers) {
+    if (on_one == 0) on_one = numbers;
+    alike = alike && numbers == on_one;
+  }
+};
+
+std::string expected_rows(const GridFile& grid) {
+  return "a row for each of the " + std::to_string(grid.y.size()) +
+         " y, with a number for each of the " + std::to_string(grid.x.size()) + " x";
+}
+
+/// A value for every x, on lines of its own: numbers left over are not dropped.
+void read_row(ListReader& file, GridFile& grid, bool volume, LinesOfRows& lines) {
+  std::size_t on_line = 0, line = 0;
+  for (std::size_t i = 0; i < grid.x.size(); ++i) {
+    grid.values.push_back(file.need_real(volume ? "speed" : "depth"));
+    if (volume && !quantity::sound_speed.holds(grid.values.back()))
+      file.fail("speed", shown(grid.values.back()) + " m/s", quantity::sound_speed.expected());
+    if (i > 0 && file.line() != line) {
+      lines.broken = true;
+      lines.add(on_line);
+      on_line = 0;
+    }
+    line = file.line();
+    ++on_line;
+  }
+  lines.add(on_line);
+  if (const std::string left = file.number_left(); !left.empty())
+    file.fail("", shown(left) + " after " + std::to_string(grid.x.size()) + " numbers",
+              expected_rows(grid));
+}
+
+/// \throws InputError  every line has a number for each y: it is a row for each x that stands there
+void check_not_turned(const ListReader& file, const GridFile& grid, const LinesOfRows& lines) {
+  if (!lines.broken || !lines.alike || lines.on_one != grid.y.size()) return;
+  throw InputError({.where = file.file(),
+                    .got = "lines of " + std::to_string(lines.on_one) + " numbers, as many as y",
+                    .expected = expected_rows(grid)});
 }
 
 std::string grid_axis_text(const std::vector<double>& axis, double factor) {
@@ -72,17 +121,15 @@ GridFile read_grid_file(ListReader file, bool volume) {
   if (volume) grid.z = read_grid_axis(file, "levels", " m", 1.0);
   const std::size_t levels = volume ? grid.z.size() : 1;
   check_grid_size(file, double(grid.x.size()) * double(grid.y.size()) * double(levels));
+  LinesOfRows lines;
   for (std::size_t k = 0; k < levels; ++k)
     for (const double y : grid.y) {
       const std::string at_y = "y = " + shown(y / 1000.0) + " km";
       file.begin(volume ? "speeds at " + shown(grid.z[k]) + " m, " + at_y : "depths at " + at_y);
-      for (std::size_t i = 0; i < grid.x.size(); ++i) {
-        grid.values.push_back(file.need_real(volume ? "speed" : "depth"));
-        if (volume && !quantity::sound_speed.holds(grid.values.back()))
-          file.fail("speed", shown(grid.values.back()) + " m/s", quantity::sound_speed.expected());
-      }
+      read_row(file, grid, volume, lines);
       file.end();
     }
+  check_not_turned(file, grid, lines);
   if (!file.at_end()) {
     file.begin("end");
     std::string rest;

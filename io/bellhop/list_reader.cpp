@@ -109,6 +109,25 @@ void ListReader::end() {
   }
 }
 
+std::string ListReader::number_left() const {
+  if (repeats_ > 0) return repeated_ ? repeated_->text : "";
+  if (closed_) return "";
+  std::size_t i = position_;
+  const auto skip = [&] {
+    while (i < text_.size() && is_blank(text_[i])) ++i;
+  };
+  skip();
+  if (!separated_ && i < text_.size() && text_[i] == ',') ++i;
+  skip();
+  const std::size_t start = i;
+  while (i < text_.size() && !is_blank(text_[i]) && text_[i] != '\n' && text_[i] != ',' &&
+         text_[i] != '/')
+    ++i;
+  std::string_view token = text_.substr(start, i - start);
+  (void)repeat_count(token);
+  return fortran_number(token) ? std::string(token) : "";
+}
+
 void ListReader::skip_blanks(bool lines) {
   for (; more() && (is_blank(text_[position_]) || (lines && text_[position_] == '\n')); ++position_)
     if (text_[position_] == '\n') ++line_;

@@ -26,6 +26,9 @@ class ListReader {
   void begin(std::string field);
   /// Ends it: the next one starts on a new line.
   void end();
+  /// The number that still stands on this line after the last item, and would be dropped; empty if
+  /// the line ends, or goes on with something else (a comment).
+  [[nodiscard]] std::string number_left() const;
 
   // One item each: false, and `value` as it was, if it is left out. \param item  its name
   // \throws InputError  what stands there is something else, or 1e30 or more, or the file ends

@@ -54,37 +54,50 @@ void append_plane(std::vector<T>& to, std::vector<T>&& from) {
   to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
 }
 
-/// Notes of the planes, each once, with how many planes it is of.
+/// Notes of the planes, each once, with how many planes it is of. Those that differ by their
+/// numbers alone are one: that of the first plane is told.
 class PlaneNotes {
  public:
   void add(const std::vector<std::string>& notes) {
     for (const std::string& text : notes) {
+      const std::string words = without_numbers(text);
       const auto known = std::find_if(all_.begin(), all_.end(),
-                                      [&](const auto& one) { return one.first == text; });
-      if (known == all_.end())
-        all_.emplace_back(text, 1);
-      else
-        ++known->second;
+                                      [&](const Note& one) { return one.words == words; });
+      if (known == all_.end()) {
+        all_.push_back({words, text, 1, true});
+      } else {
+        ++known->planes;
+        known->alike = known->alike && known->text == text;
+      }
     }
   }
   [[nodiscard]] std::vector<std::string> told(std::size_t planes) const {
-    constexpr std::size_t most = 40;
     std::vector<std::string> lines;
-    for (const auto& [text, n] : all_) {
-      if (lines.size() == most) {
-        lines.push_back("and " + std::to_string(all_.size() - most) +
-                        " notes more of single planes");
-        break;
-      }
-      lines.push_back(n == planes ? text
-                                  : "in " + std::to_string(n) + " of " + std::to_string(planes) +
-                                        " planes: " + text);
+    for (const Note& note : all_) {
+      const std::string where =
+          note.planes == planes
+              ? "in all planes"
+              : "in " + std::to_string(note.planes) + " of " + std::to_string(planes) + " planes";
+      if (!note.alike)
+        lines.push_back(where + ", with other numbers in each; of the first: " + note.text);
+      else
+        lines.push_back(note.planes == planes ? note.text : where + ": " + note.text);
     }
     return lines;
   }
 
  private:
-  std::vector<std::pair<std::string, std::size_t>> all_;
+  struct Note {
+    std::string words, text;
+    std::size_t planes;
+    bool alike;
+  };
+  static std::string without_numbers(std::string text) {
+    std::erase_if(text, [](char c) { return (c >= '0' && c <= '9') || c == '.'; });
+    return text;
+  }
+
+  std::vector<Note> all_;
 };
 
 }  // namespace

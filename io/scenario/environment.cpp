@@ -182,6 +182,16 @@ struct SonarOcean {
 
 }  // namespace
 
+void describe_ocean_on_area(Fields& field, const Area& area, const Transect& transect) {
+  TransectTable shown{transect};
+  field("transect", shown, "where the ocean's range axis lies on the map");
+  describe_area(field, &area.settings());
+  const Environment& ocean = area.everywhere();
+  Spreading spreading = ocean.spreading;
+  if (spreading != Spreading{} && !varies_with_range(ocean)) describe_spreading(field, spreading);
+  OceanTable{ocean, true, area.water().has_value()}.describe(field);
+}
+
 void describe_environment(Fields& field, const Scenario& scenario) {
   SonarOcean environment{scenario};
   field("environment", environment, "the water and its boundaries");

@@ -74,6 +74,9 @@ struct OceanTable {
   void describe(Fields& field) const;
 };
 
+/// The same of an area with its transect, for a walker that does not read.
+void describe_ocean_on_area(Fields& field, const Area& area, const Transect& transect);
+
 /// [environment.transect]
 [[nodiscard]] Transect read_transect(TomlTable& table);
 /// [environment.origin]; none: it is not said.

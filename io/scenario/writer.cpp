@@ -12,11 +12,17 @@ namespace {
 struct PlacedOcean {
   const Environment& ocean;
   const std::optional<OceanOrigin>& origin;
+  const PropagationCase::OnArea* on_area = nullptr;  // of an area that was read from files
 
   void describe(Fields& field) const {
     std::optional<OceanOrigin> shown = origin;
     if (origin) field("origin", shown, "where on the Earth the map's [0, 0] is");
-    scenario::OceanTable{ocean}.describe(field);
+    if (on_area == nullptr)
+      scenario::OceanTable{ocean}.describe(field);
+    else
+      scenario::describe_ocean_on_area(
+          field, *on_area->area,
+          {.x = on_area->place.x(), .y = on_area->place.y(), .bearing = on_area->bearing});
   }
 };
 
@@ -24,9 +30,10 @@ struct PlacedOcean {
 struct OceanDocument {
   const Environment& ocean;
   const std::optional<OceanOrigin> origin = {};
+  const PropagationCase::OnArea* on_area = nullptr;
 
   void describe(Fields& field) const {
-    PlacedOcean environment{ocean, origin};
+    PlacedOcean environment{ocean, origin, on_area};
     field("environment", environment, "the water and its boundaries");
   }
 };
@@ -38,7 +45,10 @@ struct CaseDocument {
   void describe(Fields& field) const {
     PropagationCase shown = run_case;
     field(seldom("title"), shown.title, "of the case");
-    OceanDocument{run_case.environment, run_case.origin}.describe(field);
+    const auto& area = run_case.on_area;
+    const bool of_files = area && !area->area->settings().bathymetry.file.empty();
+    OceanDocument{run_case.environment, run_case.origin, of_files ? &*area : nullptr}.describe(
+        field);
     scenario::RunTable run{shown};
     field("run", run, "what the propagation model is to do");
   }

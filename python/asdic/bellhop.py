@@ -26,12 +26,16 @@ class Case(Scenario):
         return list(self._notes)
 
 
-def read(root) -> Case:
+def read(root, maps="") -> Case:
     """Reads ROOT.env and the files beside it (.bty .ati .ssp .brc .trc .sbp).
+
+    A case of BELLHOP3D becomes the scenario of its first plane, in an area whose maps are written
+    to the file ``maps`` ("seamount.nc"). ``environment.transect.bearing_deg`` turns it. The command
+    ``asdic bellhop`` runs all azimuths at once.
 
     Raises InputError, "munk.env:12: …".
     """
-    core, notes = _core.read_bellhop(os.fspath(root))
+    core, notes = _core.read_bellhop(os.fspath(root), os.fspath(maps))
     made = Case._of_core(core)
     object.__setattr__(made, "_notes", notes)
     return made

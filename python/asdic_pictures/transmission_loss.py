@@ -157,14 +157,14 @@ def draw_from_above(field, source: int, axes=None, given=None):
     with np.errstate(divide="ignore"):
         values = -20.0 * np.log10(magnitude)
     values[~np.isfinite(values)] = np.nan
-    fig, axes = style.figure("Transmission loss from above", 7.0, axes)
+    fig, axes = style.figure("Transmission loss from above", 8.8, axes)
     low, high = given or colour_limits(values)
     turn, out = np.radians(edges(field.azimuths)), np.maximum(edges(field.range), 0.0) / 1e3
     mesh = axes.pcolormesh(np.outer(np.cos(turn), out), np.outer(np.sin(turn), out), values,
                            cmap=style.LOSS_MAP, vmin=low, vmax=high, rasterized=True)
     style.image_frame(axes)
     axes.set_facecolor(style.PAPER)
-    axes.set_aspect("equal")
+    axes.set_aspect("equal", anchor="W")
     axes.plot(0.0, 0.0, marker="D", ms=7, mfc=style.INK, mec=style.PAPER, mew=1.2, zorder=6)
     axes.set_xlabel("x from the source / km")
     axes.set_ylabel("y from the source / km")

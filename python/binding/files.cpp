@@ -53,10 +53,11 @@ void add_files(py::module_& module) {
     return watched([&](const Watch&) { return read_ping(path, number); });
   });
   module.def("pings_in", &pings_in);
-  module.def("read_bellhop", [](const std::filesystem::path& root) {
-    BellhopCase found = read_bellhop(root);
-    return py::make_tuple(found.scenario, found.notes);
-  });
+  module.def("read_bellhop",
+             [](const std::filesystem::path& root, const std::filesystem::path& maps) {
+               BellhopCase found = read_bellhop(root, maps);
+               return py::make_tuple(found.scenario, found.notes);
+             });
   using Files = std::map<std::string, std::vector<std::string>>;
   module.def("ocean", [](double latitude, double longitude, std::optional<int> month,
                          const std::string& date, std::optional<double> bearing_deg,

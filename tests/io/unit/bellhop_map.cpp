@@ -11,12 +11,16 @@
 #include "io/bellhop/case_writer.h"
 #include "io/bellhop/grid_file.h"
 #include "io/bellhop/map_run.h"
+#include "io/bellhop/map_scenario.h"
 #include "io/bellhop/results.h"
 #include "io/compare/arrivals.h"
 #include "io/compare/fields.h"
 #include "io/hdf5/hdf5_file.h"
 #include "io/hdf5/own_files.h"
 #include "io/result/result_file.h"
+#include "io/scenario/propagation.h"
+#include "io/scenario/writer.h"
+#include "raytrace/propagation.h"
 #include "support/same_case.h"
 #include "support/temporary_directory.h"
 
@@ -243,10 +247,50 @@ TEST(BellhopMap, WhatIsWrongIsToldWithItsLine) {
   EXPECT_EQ(ssp("2\n-10 10\n2\n-10 10\n2\n0 400\n1500 1501\n1502 15\n"),
             "case.ssp:8: speeds at 0 m, y = 10 km: speed: found 15 m/s, expected a speed from "
             "200 to 10000 m/s");
+  // Numbers that Fortran's READ would drop, and rows of the other axis, are not a row.
+  EXPECT_EQ(bty("'R'\n2\n-9 0 9\n2\n-9 9\n300 200\n300 300\n"),
+            "case.bty:3: x: found \"9\" after 2 numbers, expected as many as the line above says");
+  EXPECT_EQ(
+      bty("'R'\n2\n-9 9\n3\n-9 0 9\n300 200 100\n310 210 110\n"),
+      "case.bty:6: depths at y = -9 km: found \"100\" after 2 numbers, expected a row for each "
+      "of the 3 y, with a number for each of the 2 x");
+  EXPECT_EQ(
+      bty("'R'\n2\n-9 9\n2\n-9 9\n3*300\n300 200\n"),
+      "case.bty:6: depths at y = -9 km: found \"300\" after 2 numbers, expected a row for each "
+      "of the 2 y, with a number for each of the 2 x");
+  EXPECT_EQ(bty("'R'\n4\n-9 9 /\n2\n-9 9\n300 310\n200 210\n100 110\n100 110\n"),
+            "case.bty: found lines of 2 numbers, as many as y, expected a row for each of the 2 y, "
+            "with a number for each of the 4 x");
+  EXPECT_EQ(bty("'R'\n4\n-9 9 /\n2\n-9 9\n300 310 290 ! goes on\n"
+                "200 \n 210 100 110 100 ! and ends\n"),
+            "case.bty:6: depths at y = -9 km: depth: found \"!\", expected a number");
+  EXPECT_EQ(bty("'R'\n4\n-9 9 /\n2\n-9 9\n300 310 290\n200 ! a row over two lines\n"
+                "210 100 110 100 ! and on one\n"),
+            "none");
+  EXPECT_EQ(complaint(island_case(21, "1000000 ! azimuths")),
+            "case.env:23: run type: found 2000000 places of sources and azimuths of receivers, "
+            "expected at most 1000000, each with a plane of its own");
   Texts missing = island_case();
   missing.companions.pop_back();
   EXPECT_NE(complaint(missing).find("the file that \"H\" in case.env asks for"), std::string::npos)
       << complaint(missing);
+}
+
+bool says(const Texts& texts, const std::string& words) {
+  const Input input = read_case(texts, "case");
+  return std::any_of(input.notes.begin(), input.notes.end(), [&](const std::string& note) {
+    return note.find(words) != std::string::npos;
+  });
+}
+
+// No document tells which way a grid stands: where it would fit the other way, too, a note says so.
+TEST(BellhopMap, WhatIsChosenOfALayoutIsNoted) {
+  const std::string words = "this grid would fit the other way, too";
+  EXPECT_FALSE(says(island_case(), words));  // 3 by 2
+  EXPECT_TRUE(says(island_case(0, "", "'R'\n2\n-9 9\n2\n-9 9\n300 310\n200 300\n"), words));
+  EXPECT_FALSE(says(island_case(0, "", "'R'\n2\n-9 9\n2\n-9 9\n300 200\n200 300\n"), words));
+  EXPECT_TRUE(says(island_case(), "case.ssp: a row of speeds is taken for one y of one depth"));
+  EXPECT_TRUE(says(island_case(), "no document says which diagonal BELLHOP3D takes"));
 }
 
 TEST(BellhopMap, ASurfaceWithReliefGoesInPlanesOnly) {
@@ -442,6 +486,93 @@ TEST(BellhopMap, DamagedCountsOfAFileAskForNothing) {
   }
   EXPECT_THROW((void)parse_arrivals_file(" '3D'\n 100\n 1 0\n 1 0\n 1 2\n 1 3\n 90000*1\n", "file"),
                InputError);
+}
+
+template <class Parse>
+std::string file_complaint(Parse parse, const std::string& bytes) {
+  try {
+    (void)parse(bytes, "file");
+    return "none";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+// A file that is cut anywhere is refused; but of the last number of a text some digits may do.
+TEST(BellhopMap, FilesThatAreCutAreRefused) {
+  for (const bool binary : {false, true}) {
+    const std::string bytes =
+        arrivals_file_bytes(arrivals_over_map(binary, false, Dialect::fortran));
+    for (std::size_t n = 0; n + 24 < bytes.size(); n += 1 + n / 20)
+      EXPECT_NE(file_complaint(parse_arrivals_file, bytes.substr(0, n)), "none") << n;
+  }
+  const std::string bytes = shade_file_bytes(field_over_map(Dialect::fortran, false));
+  for (std::size_t n = 0; n < bytes.size() - 400; n += 1 + n / 20)
+    EXPECT_NE(file_complaint(parse_shade_file, bytes.substr(0, n)), "none") << n;
+  for (std::size_t n = 0; n + 4 < island.size(); ++n)
+    EXPECT_NE(complaint(island_case(0, "", island.substr(0, n))), "none") << n;
+  for (std::size_t n = 0; n + 5 < water.size(); ++n)
+    EXPECT_NE(complaint(island_case(0, "", island, water.substr(0, n))), "none") << n;
+}
+
+// Layouts of .arr that are not asdic's own are found by what cannot be.
+TEST(BellhopMap, ArrivalsOfAnotherLayoutAreTold) {
+  const std::string head = " '3D'\n 100\n 1 0\n 1 0\n 1 10\n 1 20\n 1 500\n 1 270\n";
+  EXPECT_EQ(file_complaint(parse_arrivals_file, head + " 1\n 1\n 0.1 0 1.5 0 10 270 -10 270 0 0\n"),
+            "none");
+  EXPECT_EQ(file_complaint(parse_arrivals_file, head + " 1\n 1\n 0.1 0 1.5 0 270 10 270 -10 0 0\n"),
+            "file:11: launch angle: found 270 degrees, expected a declination from -180 to 180 "
+            "degrees");
+  EXPECT_EQ(file_complaint(parse_arrivals_file, head + " 1\n 2\n"),
+            "file:10: number of arrivals: found 2, expected at most 1, the largest number that "
+            "stands before its source's receivers");
+}
+
+// A case becomes a scenario with its maps in a netCDF file: what that is read as runs to the same
+// numbers as the case's first plane.
+TEST(BellhopMap, ACaseBecomesAScenarioWithItsMaps) {
+  const support::TemporaryDirectory folder;
+  for (const char* run : {"'AG   2'", "'AG   3'"})
+    for (const char* profile : {"'HVW'", "'CVW'"}) {
+      Texts texts = island_case(23, run, "'R'\n3\n-9 9 /\n2\n-9 9\n300 200.5 300\n310 120 290\n",
+                                "2\n-10 10\n2\n-10 10\n2\n0 400\n1500 1500\n1500 1500\n1500 "
+                                "1500\n1500 1500\n");
+      texts.env.replace(texts.env.find("'HVW'"), 5, profile);
+      texts.env.replace(texts.env.find("50 1490"), 7, "50 1500");
+      texts.env.replace(texts.env.find("400 1510"), 8, "400 1500");
+      texts.env.replace(texts.env.find("5 ! azimuths\n0 360 /"), 20, "1\n30 /");
+      texts.env.replace(texts.env.find("-40 40"), 6, "-10 10");
+      const Input input = read_case(texts, "case");
+      const MapScenario made = map_scenario(input, (folder / "maps.nc").string());
+      ASSERT_TRUE(made.maps);
+      ASSERT_EQ(made.notes.size(), 1u);  // two places of the source
+      std::filesystem::remove(folder / "maps.nc");
+      write_maps(OutputFile(folder / "maps.nc", {}), input);
+      std::vector<std::string> notes;
+      const PropagationCase read =
+          parse_propagation_case(to_toml(made.run_case), folder / "case.toml", {}, notes);
+      SCOPED_TRACE(to_toml(made.run_case));
+      EXPECT_EQ(read.dimension, input.run_case.dimension);
+      EXPECT_EQ(read.environment.spreading, input.run_case.environment.spreading);
+      const PropagationResult there = asdic::detail::run(read),
+                              here = asdic::detail::run(input.run_case);
+      ASSERT_EQ(there.arrivals.size(), here.arrivals.size());
+      std::size_t compared = 0;
+      for (std::size_t i = 0; i < here.arrivals.size(); ++i) {
+        ASSERT_EQ(there.arrivals[i].size(), here.arrivals[i].size()) << i;
+        for (std::size_t k = 0; k < here.arrivals[i].size(); ++k, ++compared) {
+          EXPECT_NEAR(there.arrivals[i][k].delay, here.arrivals[i][k].delay, 1e-7);
+          EXPECT_NEAR(std::abs(there.arrivals[i][k].amplitude),
+                      std::abs(here.arrivals[i][k].amplitude),
+                      1e-3 * std::abs(here.arrivals[i][k].amplitude));
+        }
+      }
+      EXPECT_GT(compared, 3u);
+    }
+  Texts waves = island_case(23, "'CG   2'");
+  waves.env.replace(waves.env.find("'HVW'"), 5, "'CVW ~'");
+  waves.companions.emplace_back(".ati", "'R'\n2\n-20 20\n2\n-20 20\n0 1\n0 2\n");
+  EXPECT_THROW((void)map_scenario(read_case(waves, "case"), "maps.nc"), InputError);
 }
 
 }  // namespace

@@ -588,6 +588,28 @@ class Bellhop(unittest.TestCase):
             with self.assertRaises(asdic.InputError):
                 asdic.open(os.path.join(folder, "nothing.shd"))
 
+    def test_a_case_over_a_map(self):
+        env = ("'slope'\n300\n1\n'CVW'\n2 0 300\n0 1500 /\n300 1500 /\n'A~' 0\n300 1700 0 1.8 0.4 /\n"
+               "1\n-1 /\n1\n0.5 /\n1\n30 /\n2\n20 60 /\n3\n0.5 1.5 /\n4\n0 270 /\n'IG   2'\n"
+               "0\n-40 40 /\n9\n0 360 /\n0 5 5 400\n")
+        with tempfile.TemporaryDirectory() as folder:
+            root, maps = os.path.join(folder, "slope"), os.path.join(folder, "maps.nc")
+            with open(root + ".env", "w") as file:
+                file.write(env)
+            with open(root + ".bty", "w") as file:
+                file.write("'R'\n2\n-9 9\n3\n-9 9 /\n100 300\n110 280\n120 260\n")
+            with self.assertRaisesRegex(asdic.InputError, "slope.env: .*maps"):
+                asdic.bellhop.read(root + ".env")
+            case = asdic.bellhop.read(root, maps=maps)
+            self.assertTrue(any("first of 4" in note for note in case.notes))
+            one = case.run()
+            run("bellhop", root, "-q")
+            around = asdic.open(root + ".shd")
+            self.assertEqual(around.pressure.dims[:4], ("source_x", "source_y", "azimuth", "source_depth"))
+            np.testing.assert_allclose(around.azimuth.values, [0, 90, 180, 270])
+            first = np.abs(around.pressure.values[0, 0, 0])
+            np.testing.assert_allclose(np.abs(one.pressure.values), first, rtol=1e-2)
+
 
 class Interrupts(unittest.TestCase):
     def test_control_c(self):
