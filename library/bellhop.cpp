@@ -17,8 +17,7 @@ BellhopCase read_bellhop(const std::filesystem::path& root, const std::filesyste
       [&] {
         namespace bellhop = detail::bellhop;
         const bellhop::Input input = bellhop::read_case(name);
-        const bellhop::MapScenario made =
-            bellhop::map_scenario(input, std::filesystem::absolute(maps).string());
+        const bellhop::MapScenario made = bellhop::map_scenario(input, maps.string());
         if (made.maps) {
           if (maps.empty())
             throw detail::InputError(

@@ -151,8 +151,8 @@ void read_bathymetry(CaseReading& reading) {
   note_order(reading, file, *map.bathymetry);
   if (map.bathymetry->curvilinear)
     reading.note(file +
-                 ": type C is a bicubic surface through the depths here; BELLHOP3D keeps "
-                 "facets and lets their normals change across them");
+                 ": type C is a bicubic surface through the depths here; BELLHOP3D is "
+                 "taken to keep facets and to let their normals change across them");
   else
     reading.note(file +
                  ": type R is two triangles a cell here, parted from its corner of least x "
@@ -173,10 +173,11 @@ void read_water(CaseReading& reading) {
   reading.note(file +
                ": a row of speeds is taken for one y of one depth, and its numbers for the x, all "
                "rows of a depth together; no document tells whether BELLHOP3D does so");
-  reading.note(file +
-               ": speeds run as cubics between the places of the grid, so that gradients are "
-               "continuous; BELLHOP3D's are linear along each axis (H), and differ the less the "
-               "finer the grid is");
+  reading.note(
+      file +
+      ": speeds run as cubics between the places of the grid, so that gradients are "
+      "continuous; BELLHOP3D's are taken to be linear along each axis (H), which differs the "
+      "less the finer the grid is");
   reading.note(reading.env.file() + ": the speeds of its profile mean nothing beside " + file +
                "; its densities and attenuations count");
 }
@@ -246,7 +247,7 @@ void note_short_map(CaseReading& reading) {
       reading.note(reading.root + ending + ": on " + std::to_string(n) + " of " +
                    std::to_string(map.planes()) +
                    " azimuths receivers are beyond its grid, whose edge goes on there (BELLHOP3D "
-                   "ends its rays)");
+                   "is taken to end its rays)");
   }
 }
 

@@ -9,6 +9,7 @@
 namespace asdic::detail::bellhop {
 namespace {
 
+constexpr double least_step = 0.1;                  // of an axis [m]
 constexpr std::int64_t most_grid_places = 100'000;  // of an axis
 constexpr std::int64_t most_grid_values =
     50'000'000;  // memory is taken as rows are read, not before
@@ -30,10 +31,14 @@ std::vector<double> read_grid_axis(ListReader& file, const std::string& name, co
       axis.push_back(std::lerp(given.values[0], given.values[1], double(i) / double(n - 1)));
   }
   axis.resize(std::size_t(n), axis.front());
-  for (std::size_t i = 1; i < axis.size(); ++i)
+  for (std::size_t i = 1; i < axis.size(); ++i) {
+    const std::string item = "value " + std::to_string(i + 1), before = shown(axis[i - 1]) + unit;
     if (!(axis[i] > axis[i - 1]))
-      file.fail("value " + std::to_string(i + 1), shown(axis[i]) + unit,
-                "above the one before, " + shown(axis[i - 1]) + unit);
+      file.fail(item, shown(axis[i]) + unit, "above the one before, " + before);
+    if (factor * (axis[i] - axis[i - 1]) < least_step)
+      file.fail(item, shown(axis[i]) + unit,
+                "at least " + shown(least_step) + " m above the one before, " + before);
+  }
   for (double& value : axis) value *= factor;
   return axis;
 }

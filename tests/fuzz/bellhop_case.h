@@ -14,8 +14,8 @@ inline void read_and_write(const bellhop::Texts& texts) {
   bellhop::Written written;
   if (input.map) {
     std::size_t n = input.map->source_x.size() + input.map->planes();
-    for (const auto* grid : {&input.map->bathymetry, &input.map->altimetry, &input.map->water})
-      if (*grid) n += (*grid)->values.size();
+    for (const auto* map : {&input.map->bathymetry, &input.map->altimetry, &input.map->water})
+      if (*map) n += (*map)->values.size();
     if (n > many) return;
   }
   if (refuses([&] {

@@ -230,6 +230,9 @@ TEST(BellhopMap, WhatIsWrongIsToldWithItsLine) {
             "case.bty:2: number of x: found 1, expected a whole number from 2 to 100000");
   EXPECT_EQ(bty("'R'\n3\n0 2 1\n"),
             "case.bty:3: x: value 3: found 1 km, expected above the one before, 2 km");
+  EXPECT_EQ(bty("'R'\n3\n0 2 2.00005\n"),
+            "case.bty:3: x: value 3: found 2.00005 km, expected at least 0.1 m above the one "
+            "before, 2 km");
   EXPECT_EQ(bty("'R'\n2\n-9 9\n2\n-9 9\n300 200\n300\n"),
             "case.bty:8: depths at y = 9 km: depth: found the end of the file, expected a number");
   EXPECT_EQ(bty("'R'\n2\n-9 9\n2\n-9 9\n300 200\n300 x\n"),
@@ -393,6 +396,12 @@ TEST(BellhopMap, FieldsOfOtherAzimuthsAreNotCompared) {
   ShadeFile b = a;
   b.map.azimuths_deg[3] += 1.0;
   EXPECT_THROW((void)compare::compare_fields(a, b), InputError);
+  ShadeFile one = a;  // of a single plane against one without a map
+  one.map = {.source_x = {500.0}, .source_y = {0.0}, .azimuths_deg = {45.0}};
+  one.pressure.resize(one.source_depths.size() * one.rows() * one.receiver_ranges.size());
+  ShadeFile plain = one;
+  plain.map = {};
+  EXPECT_EQ(compare::compare_fields(one, plain).cells, one.pressure.size());
   ShadeFile coarse = a;  // every other range of A
   coarse.receiver_ranges = {200};
   coarse.pressure.clear();
@@ -532,43 +541,44 @@ TEST(BellhopMap, ArrivalsOfAnotherLayoutAreTold) {
 // numbers as the case's first plane.
 TEST(BellhopMap, ACaseBecomesAScenarioWithItsMaps) {
   const support::TemporaryDirectory folder;
-  for (const char* run : {"'AG   2'", "'AG   3'"})
-    for (const char* profile : {"'HVW'", "'CVW'"}) {
-      Texts texts = island_case(23, run, "'R'\n3\n-9 9 /\n2\n-9 9\n300 200.5 300\n310 120 290\n",
-                                "2\n-10 10\n2\n-10 10\n2\n0 400\n1500 1500\n1500 1500\n1500 "
-                                "1500\n1500 1500\n");
-      texts.env.replace(texts.env.find("'HVW'"), 5, profile);
-      texts.env.replace(texts.env.find("50 1490"), 7, "50 1500");
-      texts.env.replace(texts.env.find("400 1510"), 8, "400 1500");
-      texts.env.replace(texts.env.find("5 ! azimuths\n0 360 /"), 20, "1\n30 /");
-      texts.env.replace(texts.env.find("-40 40"), 6, "-10 10");
-      const Input input = read_case(texts, "case");
-      const MapScenario made = map_scenario(input, (folder / "maps.nc").string());
-      ASSERT_TRUE(made.maps);
-      ASSERT_EQ(made.notes.size(), 1u);  // two places of the source
-      std::filesystem::remove(folder / "maps.nc");
-      write_maps(OutputFile(folder / "maps.nc", {}), input);
-      std::vector<std::string> notes;
-      const PropagationCase read =
-          parse_propagation_case(to_toml(made.run_case), folder / "case.toml", {}, notes);
-      SCOPED_TRACE(to_toml(made.run_case));
-      EXPECT_EQ(read.dimension, input.run_case.dimension);
-      EXPECT_EQ(read.environment.spreading, input.run_case.environment.spreading);
-      const PropagationResult there = asdic::detail::run(read),
-                              here = asdic::detail::run(input.run_case);
-      ASSERT_EQ(there.arrivals.size(), here.arrivals.size());
-      std::size_t compared = 0;
-      for (std::size_t i = 0; i < here.arrivals.size(); ++i) {
-        ASSERT_EQ(there.arrivals[i].size(), here.arrivals[i].size()) << i;
-        for (std::size_t k = 0; k < here.arrivals[i].size(); ++k, ++compared) {
-          EXPECT_NEAR(there.arrivals[i][k].delay, here.arrivals[i][k].delay, 1e-7);
-          EXPECT_NEAR(std::abs(there.arrivals[i][k].amplitude),
-                      std::abs(here.arrivals[i][k].amplitude),
-                      1e-3 * std::abs(here.arrivals[i][k].amplitude));
-        }
+  for (const auto& [run, profile] :
+       {std::pair{"'AG   2'", "'HVW'"}, {"'AG   2'", "'CVW'"}, {"'AG   3'", "'CVW'"}}) {
+    Texts texts = island_case(23, run, "'R'\n3\n-9 9 /\n2\n-9 9\n300 200.5 300\n310 120 290\n",
+                              "2\n-10 10\n2\n-10 10\n2\n0 400\n1500 1500\n1500 1500\n1500 "
+                              "1500\n1500 1500\n");
+    texts.env.replace(texts.env.find("'HVW'"), 5, profile);
+    texts.env.replace(texts.env.find("50 1490"), 7, "50 1500");
+    texts.env.replace(texts.env.find("400 1510"), 8, "400 1500");
+    texts.env.replace(texts.env.find("5 ! azimuths\n0 360 /"), 20, "1\n30 /");
+    texts.env.replace(texts.env.find("-40 40"), 6, "-10 10");
+    texts.env.replace(texts.env.find("3\n0 2 /"), 7, "1\n1 /");
+    const Input input = read_case(texts, "case");
+    const MapScenario made = map_scenario(input, (folder / "maps.nc").string());
+    ASSERT_TRUE(made.maps);
+    ASSERT_EQ(made.notes.size(), 1u);  // two places of the source
+    std::filesystem::remove(folder / "maps.nc");
+    write_maps(OutputFile(folder / "maps.nc", {}), input);
+    std::vector<std::string> notes;
+    const PropagationCase read =
+        parse_propagation_case(to_toml(made.run_case), folder / "case.toml", {}, notes);
+    SCOPED_TRACE(to_toml(made.run_case));
+    EXPECT_EQ(read.dimension, input.run_case.dimension);
+    EXPECT_EQ(read.environment.spreading, input.run_case.environment.spreading);
+    const PropagationResult there = asdic::detail::run(read),
+                            here = asdic::detail::run(input.run_case);
+    ASSERT_EQ(there.arrivals.size(), here.arrivals.size());
+    std::size_t compared = 0;
+    for (std::size_t i = 0; i < here.arrivals.size(); ++i) {
+      ASSERT_EQ(there.arrivals[i].size(), here.arrivals[i].size()) << i;
+      for (std::size_t k = 0; k < here.arrivals[i].size(); ++k, ++compared) {
+        EXPECT_NEAR(there.arrivals[i][k].delay, here.arrivals[i][k].delay, 1e-7);
+        EXPECT_NEAR(std::abs(there.arrivals[i][k].amplitude),
+                    std::abs(here.arrivals[i][k].amplitude),
+                    1e-3 * std::abs(here.arrivals[i][k].amplitude));
       }
-      EXPECT_GT(compared, 3u);
     }
+    EXPECT_GT(compared, 3u);
+  }
   Texts waves = island_case(23, "'CG   2'");
   waves.env.replace(waves.env.find("'HVW'"), 5, "'CVW ~'");
   waves.companions.emplace_back(".ati", "'R'\n2\n-20 20\n2\n-20 20\n0 1\n0 2\n");
