@@ -41,6 +41,10 @@ const Column columns[] = {
     {"uncertainty_db", &CoverageLayer::uncertainty_db,
      "standard deviation of the echo's level in the cell: interference of its paths, and what rays "
      "cannot tell at edges; infinite: no ray comes",
+     "dB"},
+    {"reverberation_uncertainty_db", &CoverageLayer::reverberation_uncertainty_db,
+     "standard deviation of reverberation's level over the delays of the cell; infinite: it begins "
+     "or ends there",
      "dB"}};
 
 InputError wrong(const std::filesystem::path& path, const std::string& what, const std::string& got,

@@ -1,5 +1,6 @@
 #pragma once
 #include <complex>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -49,6 +50,7 @@ class BeamBank {
 
  private:
   [[nodiscard]] Vec3 slowness(double bearing, double elevation) const noexcept;
+  void look_along_axis();
 
   std::vector<Vec3> phones_;
   double angular_frequency_, sound_speed_;
@@ -56,6 +58,10 @@ class BeamBank {
   const ElevationNodes& nodes_;
   std::vector<std::complex<double>> coherence_;  // Γ of the noise, [phones × phones]
   std::vector<float> real_, imaginary_;          // of e, [phones][sectors × parts × nodes]
+  // Of a line instead: |w·e|² over the difference of cosines, and those of all rows.
+  std::optional<Vec3> axis_;
+  double cosine_step_ = 0.0;
+  std::vector<float> line_, cosines_;
 };
 
 }  // namespace asdic::detail

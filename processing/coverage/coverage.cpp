@@ -12,6 +12,7 @@
 #include "processing/coverage/beam_bank.h"
 #include "processing/coverage/bearing_reverberation.h"
 #include "processing/coverage/echo_mean.h"
+#include "processing/coverage/filter_weights.h"
 #include "processing/coverage/plane_fans.h"
 #include "processing/detection_threshold.h"
 #include "raytrace/parallel/parallel.h"
@@ -66,22 +67,6 @@ double latest_echo(const PingSimulator& simulator, const CoverageSettings& setti
   return steeper * (2.0 * settings.reach + apart) /
              (0.97 * fastest_water(simulator.scenario().environment)) +
          pulse;
-}
-
-/// A mean over a window as long as the pulse of energy 1, |s(T/2 + x)|²: what of a density of power
-/// over delay is received at the middle of an echo.
-std::vector<float> pulse_weights(const Pulse& pulse, double step) {
-  const auto half = static_cast<std::size_t>(std::ceil(0.5 * pulse.duration() / step));
-  std::vector<float> weights(2 * half + 1, 0.0F);
-  const auto samples = 64 * weights.size();
-  const double width = step * static_cast<double>(weights.size()) / static_cast<double>(samples);
-  for (std::size_t i = 0; i < samples; ++i) {
-    const double x =
-        (static_cast<double>(i) + 0.5) * width - 0.5 * step * static_cast<double>(weights.size());
-    weights[i / 64] +=
-        static_cast<float>(width * std::norm(pulse.analytic(0.5 * pulse.duration() + x)));
-  }
-  return weights;
 }
 
 /// An odd part of a length that is no longer than some tens of metres.
@@ -168,9 +153,10 @@ class Maker {
     made_.bottom_depth.assign(cells(), unknown);
     for (const double depth : settings_.depths) {
       CoverageLayer layer{.depth = depth};
-      for (auto* values : {&layer.echo_db, &layer.two_way_loss_db, &layer.delay,
-                           &layer.reverberation_db, &layer.noise_db, &layer.signal_excess_db,
-                           &layer.detection_probability, &layer.uncertainty_db})
+      for (auto* values :
+           {&layer.echo_db, &layer.two_way_loss_db, &layer.delay, &layer.reverberation_db,
+            &layer.noise_db, &layer.signal_excess_db, &layer.detection_probability,
+            &layer.uncertainty_db, &layer.reverberation_uncertainty_db})
         values->assign(cells(), unknown);
       layer.certainty.assign(cells(), std::int8_t(CoverageCertainty::sure));
       made_.layers.push_back(std::move(layer));
@@ -282,8 +268,26 @@ class Maker {
     tell_of(!paths_.layered(),
             "environment: over slopes and fronts the picture of the area is right as a mean over "
             "cells; a cell by itself may be off by its uncertainty_db");
+    tell_what_hides_echoes();
     const std::string bounces = lacking(scenario_.propagation, made_.followed, "the picture");
     tell_of(!bounces.empty(), bounces);
+  }
+
+  /// Of what the array receives beside echoes, reverberation and noise.
+  void tell_what_hides_echoes() {
+    const double speed = paths_.speed_at(receiver()), length = pulse_.duration();
+    const bool own = geometry_.is_own(settings_.array);
+    if (own && scenario_.pings.blanking)
+      made_.warnings.push_back("pings.blanking: the array receives nothing of the first " +
+                               to_text(length) + " s, in which echoes come from nearer than " +
+                               to_text(std::round(0.5 * length * speed)) +
+                               " m; the picture of the area shows them as if it did");
+    if (own || !scenario_.propagation.direct_blast) return;
+    const double blast = (source() - receiver()).norm() / speed;
+    made_.warnings.push_back(
+        "propagation.direct_blast: the ping itself is received from " +
+        to_text(std::round(100.0 * blast) / 100.0) + " s on for " + to_text(length) +
+        " s and hides echoes; the picture of the area shows them as if it were not");
   }
 
   [[nodiscard]] double reverberation_reach() const {
@@ -478,6 +482,16 @@ class Maker {
     return ray;
   }
 
+  /// Standard deviation of 20 lg of the distances there and back, over a cell's length [dB].
+  [[nodiscard]] double falls_over_cell(const Vec3& place) const {
+    const auto slope = [&](const Vec3& end) {
+      const double distance = std::max(0.5 * step_, (place - end).norm());
+      return (place - end).head<2>().dot((place - receiver()).head<2>()) /
+             (distance * distance * std::max(0.5 * step_, (place - receiver()).head<2>().norm()));
+    };
+    return db_per_neper * std::abs(slope(source()) + slope(receiver())) * step_ / std::sqrt(12.0);
+  }
+
   /// Echoes of one bearing. \param out, back  fans; null: of arrivals
   void echoes(std::size_t j, std::size_t depth, const BoundaryFan* out, const BoundaryFan* back,
               EchoMeans& means) {
@@ -515,7 +529,8 @@ class Maker {
       const EchoCell where{
           .outward = Vec2(std::sin(made_.bearings[j]), std::cos(made_.bearings[j])),
           .length = step_,
-          .width = together() ? 0.0 : range * 2.0 * pi / settings_.bearings};
+          .width = together() ? 0.0 : range * 2.0 * pi / settings_.bearings,
+          .falls_db = falls_over_cell(place)};
       const EchoMean echo = means(there, home, where);
       layer.echo_db[cell] = static_cast<float>(projector_.source_level_db + settings_.strength_db +
                                                db_from_power(echo.power));
@@ -602,10 +617,14 @@ class Maker {
         density[bin * row + j * nodes_.size() + e] += power[bin * nodes_.size() + e];
   }
 
-  /// Over each delay the mean that a pulse receives, times its energy.
-  void receive_pulse(std::vector<float>& density) const {
+  /// By how much the echoes of a cell's ends are apart [s], no more than a pulse.
+  [[nodiscard]] double cell_delay() const {
+    return std::min(2.0 * step_ / paths_.speed_at(receiver()), pulse_.duration());
+  }
+
+  /// Over each delay the mean that the matched filter receives, times the pulse's energy.
+  void receive_pulse(std::vector<float>& density, const std::vector<float>& weights) const {
     if (density.empty()) return;
-    const std::vector<float> weights = pulse_weights(pulse_, axis_.step);
     const std::size_t row = density.size() / axis_.bins, half = weights.size() / 2;
     std::vector<float> received(density.size(), 0.0F);
     in_parallel(axis_.bins, [&](std::size_t bin) {
@@ -619,7 +638,8 @@ class Maker {
   }
 
   void look_through_beams() {
-    for (std::vector<float>& density : density_) receive_pulse(density);
+    const std::vector<float> weights = filter_weights(pulse_, axis_.step, cell_delay());
+    for (std::vector<float>& density : density_) receive_pulse(density, weights);
     const ProbabilityTable probability(settings_.false_alarm_probability, settings_.reference_cells,
                                        fluctuation_shape(settings_.fluctuation));
     const double noise_db = noise_band_db(scenario_.noise, frequency(), pulse_.bandwidth_40db());
@@ -651,9 +671,15 @@ class Maker {
         const double delay = std::isnan(layer.delay[cell])
                                  ? (2.0 * range + apart()) / paths_.speed_at(receiver())
                                  : double(layer.delay[cell]);
-        double reverberation = 0.0;
-        for (const std::vector<float>& density : density_)
-          if (!density.empty()) reverberation += received(density, *beams[node], delay);
+        const auto at = [&](double time) {
+          double power = 0.0;
+          for (const std::vector<float>& density : density_)
+            if (!density.empty()) power += received(density, *beams[node], time);
+          return power;
+        };
+        const double reverberation = at(delay);
+        layer.reverberation_uncertainty_db[cell] = static_cast<float>(change_over_cell(
+            reverberation, at(delay - 0.5 * cell_delay()), at(delay + 0.5 * cell_delay())));
         const BeamLevels levels{
             .echo_db = double(layer.echo_db[cell]),
             .reverberation_db = projector_.source_level_db + db_from_power(reverberation),
@@ -666,6 +692,18 @@ class Maker {
             static_cast<float>(probability(excess + made_.threshold_db));
       }
     }
+  }
+
+  /// Standard deviation of reverberation over the delays of a cell, and of what its fans leave open
+  /// [dB]. \param earlier, later  power at the cell's ends
+  [[nodiscard]] double change_over_cell(double power, double earlier, double later) const {
+    // Measured against pings: docs/theory/coverage.md.
+    const double of_fans = paths_.layered() ? 0.5 : 1.0;
+    if (!(power > 0.0)) return earlier > 0.0 || later > 0.0 ? infinity : 0.0;
+    const auto change = [&](double other) {
+      return other > 0.0 ? std::abs(db_from_power(other / power)) : infinity;
+    };
+    return std::hypot(of_fans, std::max(change(earlier), change(later)) / std::sqrt(3.0));
   }
 
   /// Power in a beam at a delay.
@@ -742,11 +780,19 @@ void check(const PingSimulator& simulator, const CoverageSettings& settings) {
 
 }  // namespace
 
-MemoryNeed coverage_need(const PingSimulator& /*simulator*/, const CoverageSettings& settings) {
+MemoryNeed coverage_need(const PingSimulator& simulator, const CoverageSettings& settings) {
+  check(simulator, settings);
+  const PingGeometry geometry = simulator.geometry(settings.ping);
+  const double wavelength =
+      simulator.paths().speed_at(geometry.reference_place(settings.array).position) /
+      simulator.pulse(geometry.sent().transmitter).centre_frequency();
+
   const double cells = static_cast<double>(settings.bearings) * settings.ranges;
-  constexpr double a_cell = 8.0 * sizeof(float) + 1.0 + sizeof(float);
+  constexpr double a_cell = 9.0 * sizeof(float) + 1.0 + sizeof(float);
   // Reverberation over delay, elevation and bearing, twice while the pulse is laid over it.
-  constexpr double nodes = 20.0, bins = 4.0;
+  constexpr double bins = 4.0;
+  const auto nodes =
+      static_cast<double>(ElevationNodes(geometry.phones(settings.array), wavelength).size());
   return {.where = "--ranges",
           .what = "a picture of " + std::to_string(settings.bearings) + " bearings and " +
                   std::to_string(settings.ranges) + " ranges",

@@ -44,8 +44,9 @@ struct CoverageLayer {
   std::vector<float> noise_db;          ///< in the beam, in the −40 dB band [dB re 1 µPa]
   std::vector<float> signal_excess_db;  ///< by signal_excess_db()
   std::vector<float> detection_probability;
-  std::vector<float> uncertainty_db;   ///< of the echo level, one standard deviation; ∞: no ray
-  std::vector<std::int8_t> certainty;  ///< CoverageCertainty
+  std::vector<float> uncertainty_db;  ///< of the echo level, one standard deviation; ∞: no ray
+  std::vector<float> reverberation_uncertainty_db;  ///< the same of its level, over the cell
+  std::vector<std::int8_t> certainty;               ///< CoverageCertainty
 };
 
 /// What a sonar sees of the area around it.

@@ -138,6 +138,8 @@ EchoMean EchoMeans::operator()(std::span<const EchoLeg> out, std::span<const Ech
     sum += power;
     squares += power * power;
   }
+  // A single path falls over the cell, too.
+  found.spread_db = std::hypot(found.spread_db, cell.falls_db);
   if (sum > 0.0)
     found.phases_db = exponential_db * std::sqrt(std::max(0.0, 1.0 - squares / (sum * sum)));
   return found;
@@ -184,7 +186,49 @@ EchoMean EchoMeans::over_phases() {
     // By how much of the power changes over the cell.
     found.spread_db = exponential_db * std::min(1.0, std::sqrt(std::max(0.0, apart)) / power);
   }
+  if (times_.size() > 1 && found.power > 0.0) add_louder_times(found);
   return found;
+}
+
+/// ⟨max_t|y|²⟩ − ⟨|y|²⟩ at the loudest time: at each place of a cell another answer may be the
+/// loudest. A mean over few places, which the mean of the powers themselves is not.
+void EchoMeans::add_louder_times(EchoMean& found) {
+  constexpr int places = 8;
+  constexpr double first = 0.7548776662466927, second = 0.5698402909980532;  // even over a square
+  const double width = std::sqrt(12.0);  // of what is even, in standard deviations
+  answers_.clear();
+  std::size_t at = 0;
+  for (const Time& time : times_) {
+    if (time.at == found.delay) at = answers_.size() / pairs_.size();
+    for (const Pair& p : pairs_) answers_.push_back(pulse_(time.at - p.delay));
+  }
+  double louder = 0.0, open_louder = 0.0;
+  for (int k = 0; k < places; ++k) {
+    const double u = std::fmod(first * (k + 1), 1.0) - 0.5,
+                 v = std::fmod(second * (k + 1), 1.0) - 0.5;
+    places_.clear();
+    for (const Pair& p : pairs_) {
+      const auto turn = std::polar(1.0, -width * (u * p.along + v * p.across));
+      places_.push_back(p.pressure * turn);
+      places_.push_back(p.open * turn);
+    }
+    double most = 0.0, here = 0.0, open_most = 0.0, open_here = 0.0;
+    for (std::size_t t = 0; t < times_.size(); ++t) {
+      std::complex<double> sum = 0.0, open = 0.0;
+      const std::complex<double>* const answer = &answers_[t * pairs_.size()];
+      for (std::size_t i = 0; i < pairs_.size(); ++i) {
+        sum += places_[2 * i] * answer[i];
+        open += places_[2 * i + 1] * answer[i];
+      }
+      most = std::max(most, std::norm(sum));
+      open_most = std::max(open_most, std::norm(open));
+      if (t == at) here = std::norm(sum), open_here = std::norm(open);
+    }
+    louder += (most - here) / places;
+    open_louder += (open_most - open_here) / places;
+  }
+  found.power += louder;
+  found.open_power += open_louder;
 }
 
 }  // namespace asdic::detail

@@ -21,6 +21,7 @@ struct EchoLeg {
 struct EchoCell {
   Vec2 outward = Vec2(0.0, 1.0);     ///< unit vector along which it is `length` long
   double length = 0.0, width = 0.0;  ///< [m]
+  double falls_db = 0.0;             ///< standard deviation of a path's level, as it spreads [dB]
 };
 
 /// The echo of a point of strength 0 dB that lies anywhere in a cell.
@@ -62,6 +63,7 @@ class EchoMeans {
   [[nodiscard]] bool turns_slowly() const;
   [[nodiscard]] EchoMean over_places();
   [[nodiscard]] EchoMean over_phases();
+  void add_louder_times(EchoMean& found);
 
   double frequency_;
   const PulseCoherence& pulse_;

@@ -124,6 +124,21 @@ class LevelFan {
   RayTrajectory trajectory_;
 };
 
+/// A level so near to the source's depth that halved rays of a fan would miss its far cells: adds
+/// rays that meet it along straight lines, from cell to cell at first and in tenths of the range at
+/// last. \param below  the source [m]
+void aim_along(double below, const GroundGrid& cells, double max_range, const FanLimits& limits,
+               std::vector<double>& angles) {
+  constexpr double resolved = 2e-3;  // of halved rays, some of them [rad]
+  constexpr double factor = 1.3, most = 0.05;
+  if (std::abs(below) > resolved * max_range) return;
+  for (double range = std::max(cells.wide(), std::abs(below)); range < factor * max_range;
+       range = std::min(factor * range, range + most * max_range)) {
+    const double angle = std::atan2(-below, range);
+    if (angle > limits.lowest && angle < limits.highest) angles.push_back(angle);
+  }
+}
+
 /// Launch angles between −1 and 1, twice denser about the middle.
 double place(int i, int rays) noexcept {
   const double v = 2.0 * i / (rays - 1) - 1.0;
@@ -148,10 +163,15 @@ std::vector<std::vector<CellHit>> hits_on_levels(const RayTracer& tracer, double
   constexpr int halvings = 5;
   LevelFan fan(tracer, source_depth, levels, trace,
                TubeFiller(tracer.environment(), cells, max_range, frequency, limits));
+  std::vector<double> angles;
+  for (int i = 0; i < rays; ++i)
+    angles.push_back(std::lerp(limits.lowest, limits.highest, 0.5 + 0.5 * place(i, rays)));
+  for (const GroundLevel& level : levels)
+    if (!level.boundary) aim_along(level.depth - source_depth, cells, max_range, limits, angles);
+  std::sort(angles.begin(), angles.end());
   LevelFan::Rays before;
-  for (int i = 0; i < rays; ++i) {
-    LevelFan::Rays now =
-        fan.at(std::lerp(limits.lowest, limits.highest, 0.5 + 0.5 * place(i, rays)));
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    LevelFan::Rays now = fan.at(angles[i]);
     if (i > 0) fan.between(before, now, halvings);
     before = std::move(now);
   }

@@ -148,6 +148,87 @@ TEST(Coverage, ABeamOfALineHearsBothItsSides) {
   EXPECT_GT(loudest, quietest + 2.0);
 }
 
+// A long line looks along itself at a target in its own depth. The bottom's sound comes from below:
+// in the sidelobes, of which there are several between the elevations of a shorter array.
+TEST(Coverage, ALongLineHearsTheBottomInItsSidelobes) {
+  const PingSimulator simulator(scenario(straight, {"array.phones=96", "array.spacing=0.5"}));
+  const PingSimulator one(scenario(straight));
+  const CoverageSettings settings = small(200.0, 12e3, 60, 36);
+  const Coverage found = coverage(simulator, settings), open = coverage(one, settings);
+  for (const std::size_t i : {20U, 24U, 28U, 36U, 44U}) {
+    const double cosine = std::sqrt(1.0 - std::pow(1800.0 / found.ranges[i], 2));
+    const double looks = std::cos(found.bearings[0]);
+    double mean = 0.0;
+    constexpr int steps = 20000;
+    for (int k = 0; k < steps; ++k) {
+      const double half = 0.25 * 2.0 * pi * (std::cos(2.0 * pi * k / steps) * cosine - looks);
+      const double lobe =
+          std::abs(std::sin(half)) < 1e-9 ? 1.0 : std::sin(96.0 * half) / (96.0 * std::sin(half));
+      mean += lobe * lobe / steps;
+    }
+    const double gained =
+        double(found.layers[0].reverberation_db[i]) - double(open.layers[0].reverberation_db[i]);
+    // Two elevations in a lobe, straight between them.
+    EXPECT_NEAR(gained, db_from_power(mean), 1.0) << found.ranges[i];
+  }
+}
+
+// Before the bottom answers at all a sweep's filter receives the sidelobes of what comes later, and
+// not what its length overlaps with: R = sin(πBτ(1 − |τ|/T))/(πBτ) of a sweep without a window.
+TEST(Coverage, ReverberationIsWhatTheFilterReceives) {
+  const PingSimulator simulator(scenario(straight, {"pulse.duration=0.5"}));
+  const Coverage found = coverage(simulator, small(200.0, 3e3, 150));
+  const Pulse& pulse = simulator.pulse();
+  constexpr double height = 1800.0, speed = 1500.0, duration = 0.5, band = 100.0, cell = 40.0;
+  const double factor = pulse.energy() * noise_bandwidth(pulse);
+  for (const std::size_t i : {76U, 80U, 84U, 88U, 92U, 100U, 120U}) {
+    const double middle = 2.0 * found.ranges[i] / speed;
+    double received = 0.0;
+    constexpr double step = 5e-4;
+    for (double t = 2.0 * height / speed + 0.5 * step; t < middle + 1.0; t += step) {
+      const double range = 0.5 * speed * t, sine = height / range;
+      for (int k = 0; k < 16; ++k) {  // over the cell
+        const double later = t - middle - ((k + 0.5) / 16 - 0.5) * cell / speed;
+        if (std::abs(later) >= duration) continue;
+        const double x = pi * band * later, share = 1.0 - std::abs(later) / duration;
+        const double answer = std::abs(x) < 1e-9 ? share : std::sin(x * share) / x;
+        received += step / 16 * pi * speed * power_from_db(-27.0) * sine * sine /
+                    std::pow(range, 3) * answer * answer;
+      }
+    }
+    // Bins of 31 ms at an edge of 50 dB.
+    EXPECT_NEAR(double(found.layers[0].reverberation_db[i]),
+                220.0 + db_from_power(factor * received),
+                found.ranges[i] < height - 60.0 || found.ranges[i] > height + 60.0 ? 1.0 : 4.0)
+        << found.ranges[i];
+  }
+}
+
+// A target as deep as the sonar, over a floor that slopes: rays to it leave within a thousandth of
+// the horizontal. The direct path and that by the surface, both ways, over the cell.
+TEST(Coverage, ATargetInTheSonarsOwnDepthIsReached) {
+  const PingSimulator simulator(scenario(
+      straight,
+      {"environment.bottom={kind=\"fluid\",shape={range=[-20e3,20e3],depth=[1900.0,2100.0]}}",
+       "propagation.max_surface_bounces=1", "reverberation.enabled=false",
+       "pulse={kind=\"cw\",frequency=1500.0,duration=2.0}"}));
+  const Coverage found = coverage(simulator, small(200.0, 12e3, 60, 4));
+  for (const std::size_t i : {10U, 20U, 30U, 40U, 55U}) {
+    double mean = 0.0;
+    constexpr int places = 400;
+    for (int k = 0; k < places; ++k) {
+      const double range = found.ranges[i] + ((k + 0.5) / places - 0.5) * 200.0;
+      const double far = std::hypot(range, 400.0), wavenumber = 2.0 * pi * 1500.0 / 1500.0;
+      // All four overlap but for a hundredth of the tone.
+      const std::complex<double> way =
+          std::polar(1.0 / range, -wavenumber * range) - std::polar(1.0 / far, -wavenumber * far);
+      mean += std::norm(way * way) / places;
+    }
+    EXPECT_NEAR(double(found.layers[0].echo_db[i]), 230.0 + db_from_power(mean), 0.5)
+        << found.ranges[i];
+  }
+}
+
 /// What the matched filter answers to a target in the middle of a part of a cell: the greatest sum
 /// of its echoes at the delay of one of them.
 double answer_to(const Scenario& scenario, const Vec3& place, double strength_db) {
