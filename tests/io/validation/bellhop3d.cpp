@@ -253,6 +253,45 @@ TEST(Bellhop3d, ALevelSeaIsThePlanesOnEveryAzimuth) {
     }
 }
 
+// The same where the sea is level but a map all the same: speeds that grow evenly with depth, as a
+// volume, which is not known to be alike everywhere. Every azimuth has the paths of the plane.
+TEST(Bellhop3d, ALevelVolumeIsThePlaneOnEveryAzimuth) {
+  const std::string rows = "\n2 0 200\n0 1490 /\n200 1500 /", material = "\n200 1650 0 1.8 0.5 /";
+  MapCase level{.profile = "'HVW'" + rows,
+                .bottom = "'A' 0" + material,
+                .source_x = "1\n1 /",
+                .source_y = "1\n-2 /",
+                .source_depth = "1\n40 /",
+                .depths = "1\n120 /",
+                .ranges = "1\n1.5 /",
+                .azimuths = "3\n-20 77 200",
+                .fan = "0\n-35 35 /"};
+  level.texts.companions = {
+      {".ssp", "2\n-9 9\n2\n-9 9\n2\n0 200\n1490 1490\n1490 1490\n1500 1500\n1500 1500\n"}};
+  const ArrivalsFile one = arrivals_of(plane_case("'CVW'" + rows, level.bottom, level, "AG", {}));
+  ASSERT_GT(one.arrivals[0].size(), 4u);
+  for (const char* run : {"AG   2", "AG   3"}) {
+    level.run = run;
+    const ArrivalsFile around = arrivals_of(level.read());
+    for (std::size_t a = 0; a < 3; ++a)
+      for (const ArrivalRow& row : one.arrivals[0]) {
+        const auto same = std::find_if(
+            around.arrivals[a].begin(), around.arrivals[a].end(), [&](const ArrivalRow& other) {
+              return other.surface_bounces == row.surface_bounces &&
+                     other.bottom_bounces == row.bottom_bounces &&
+                     std::abs(other.launch_angle_deg - row.launch_angle_deg) < 0.01;
+            });
+        if (same == around.arrivals[a].end()) {
+          ADD_FAILURE() << run << ": no path of " << row.delay << " s";
+          continue;
+        }
+        EXPECT_NEAR(same->delay, row.delay, 1e-6);
+        EXPECT_NEAR(20.0 * std::log10(same->amplitude / row.amplitude), 0.0, 0.01);
+        EXPECT_NEAR(same->launch_deflection_deg, 0.0, 1e-3);
+      }
+  }
+}
+
 // The guide's seamount in planes: the floor along an azimuth is known by hand where the azimuth
 // follows the lines of the grid or the diagonals of its cells, those that part them and the others.
 TEST(Bellhop3d, ASeamountInPlanesIsTheSectionThroughItsFacets) {
