@@ -161,30 +161,51 @@ class FloorTracer {
   /// Where the line from begin to end crosses a line of the grid or a diagonal.
   void add_crossings(double begin, double end, std::vector<double>& ranges) const {
     const ScalarMap& floor = area_.floor();
+    const MapAxis &across = floor.grid().x(), &up = floor.grid().y();
     const auto on_grid = [&](double r) {
       return floor.frame().on_grid(place_.x() + r * way_.x(), place_.y() + r * way_.y());
     };
-    const MapFrame::OnGrid a = on_grid(begin), b = on_grid(end);
-    // Places in steps of the grid: numbers of its lines, and their differences are diagonals.
-    const auto steps = [](const MapAxis& axis, double x) {
-      const std::size_t i = axis.interval(x);
-      const double width = axis.places()[i + 1] - axis.places()[i];
-      return double(i) + (x - axis.places()[i]) / width;
+    MapFrame::OnGrid a = on_grid(begin), b = on_grid(end);
+    if (floor.frame().is_geographic()) {
+      const double turn =
+          across.begin() + std::remainder(a.u - across.begin() - 180.0, 360.0) + 180.0 - a.u;
+      a.u += turn;
+      b.u += turn;
+    }
+    const std::size_t first = ranges.size();
+    const auto add_lines = [&](const MapAxis& axis, double p, double q) {
+      if (p == q) return;
+      const auto places = axis.places();
+      const auto [low, high] = std::minmax(p, q);
+      for (auto line = std::lower_bound(places.begin(), places.end(), low);
+           line != places.end() && *line <= high; ++line)
+        ranges.push_back(std::lerp(begin, end, (*line - p) / (q - p)));
     };
-    const double turn = floor.frame().is_geographic()
-                            ? floor.grid().x().begin() +
-                                  std::remainder(a.u - floor.grid().x().begin() - 180.0, 360.0) +
-                                  180.0 - a.u
-                            : 0.0;
-    const double u0 = steps(floor.grid().x(), a.u + turn), u1 = steps(floor.grid().x(), b.u + turn);
-    const double v0 = steps(floor.grid().y(), a.v), v1 = steps(floor.grid().y(), b.v);
-    const auto add = [&](double p, double q) {
-      for (double n = std::ceil(std::min(p, q)); n <= std::max(p, q); n += 1.0)
-        if (p != q) ranges.push_back(begin + (end - begin) * (n - p) / (q - p));
+    add_lines(across, a.u, b.u);
+    add_lines(up, a.v, b.v);
+    std::sort(ranges.begin() + static_cast<std::ptrdiff_t>(first), ranges.end());
+    // Between two of them lies one cell: where its diagonal is crossed.
+    const std::vector<double> lines(ranges.begin() + static_cast<std::ptrdiff_t>(first),
+                                    ranges.end());
+    const auto add_diagonal = [&](double from, double to) {
+      const auto above = [&](double share, std::size_t i, std::size_t j) {
+        const auto x = across.places(), y = up.places();
+        return (std::lerp(a.u, b.u, share) - x[i]) / (x[i + 1] - x[i]) -
+               (std::lerp(a.v, b.v, share) - y[j]) / (y[j + 1] - y[j]);
+      };
+      const double p = (from - begin) / (end - begin), q = (to - begin) / (end - begin);
+      const double u = std::lerp(a.u, b.u, 0.5 * (p + q)), v = std::lerp(a.v, b.v, 0.5 * (p + q));
+      if (u < across.begin() || u > across.end() || v < up.begin() || v > up.end()) return;
+      const std::size_t i = across.interval(u), j = up.interval(v);
+      const double before = above(p, i, j), after = above(q, i, j);
+      if (before * after < 0.0) ranges.push_back(std::lerp(from, to, before / (before - after)));
     };
-    add(u0, u1);
-    add(v0, v1);
-    add(u0 - v0, u1 - v1);
+    double from = begin;
+    for (const double to : lines) {
+      if (to > from) add_diagonal(from, to);
+      from = std::max(from, to);
+    }
+    if (end > from) add_diagonal(from, end);
   }
 
   /// Adds a node, in place of the last one where that lies on a straight line.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include "core/error.h"
+#include "core/text.h"
 #include "raytrace/ocean/samples.h"
 
 namespace asdic::detail {
@@ -24,6 +26,15 @@ MapAxis::MapAxis(const char* name, std::vector<double> places) : places_(std::mo
   check_count(places_.size(), name, 2);
   const std::string beyond = "a " + std::string(name) + " beyond";
   for (std::size_t i = 0; i < places_.size(); ++i) check_place(places_, i, name, beyond.c_str());
+  // Two places that should be one make cells without a width.
+  constexpr double least = 1e-4;  // of the mean step
+  const double mean = (places_.back() - places_.front()) / double(places_.size() - 1);
+  for (std::size_t i = 1; i < places_.size(); ++i)
+    if (places_[i] - places_[i - 1] < least * mean)
+      throw InputError({.where = name,
+                        .got = "places " + to_text(places_[i - 1]) + " and " + to_text(places_[i]),
+                        .expected = "steps of at least " + to_text(least * mean) +
+                                    ", a ten-thousandth of the mean step"});
   per_step_ = even_step(places_);
 }
 

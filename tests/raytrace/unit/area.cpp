@@ -47,6 +47,7 @@ TEST(MapAxis, ValueAndSlopeAreContinuousAndGoOnLevel) {
 TEST(MapAxis, PlacesMustIncrease) {
   EXPECT_THROW(MapAxis("x", {0.0, 1.0, 1.0}), InputError);
   EXPECT_THROW(MapAxis("x", {0.0}), InputError);
+  EXPECT_THROW(MapAxis("x", {0.0, 1.0, 1.0 + 1e-6, 2.0}), InputError);
 }
 
 // The distance from the origin and the bearing there are those of geodesics on the ellipsoid: 1 mm
@@ -183,6 +184,34 @@ TEST(AreaSection, FollowsAFacetedMapExactly) {
     const Environment plane = area.section(place, bearing, 9e3);
     for (double r = 0.0; r < 9e3; r += 3.1)
       EXPECT_NEAR(
+          plane.bottom.depth_at(r),
+          area.bottom_depth(place.x() + r * std::sin(bearing), place.y() + r * std::cos(bearing)),
+          2e-3)
+          << bearing << ' ' << r;
+  }
+}
+
+// On axes whose steps grow from 50 to 900 m.
+TEST(AreaSection, FollowsAFacetedMapOfUnevenSteps) {
+  std::vector<double> places{-3000.0};
+  for (double step = 50.0; step < 1000.0; step *= 1.35) places.push_back(places.back() + step);
+  const auto grid = std::make_shared<const MapGrid>(
+      MapAxis("x", places), MapAxis("y", places), 1,
+      [places](const MapGrid::Window& window, std::span<float> values) {
+        std::size_t next = 0;
+        for (std::size_t j = 0; j < window.rows; ++j)
+          for (std::size_t i = 0; i < window.columns; ++i)
+            values[next++] =
+                static_cast<float>(hill(places[window.column + i], places[window.row + j]));
+      });
+  const Area area({.floor = ScalarMap(grid, MapFrame::projected(0.0, 0.0),
+                                      MapInterpolation::faceted, 1.0, {"test: depth"})},
+                  sandy());
+  const Vec2 place(-2903.0, -2811.0);
+  for (const double bearing : {0.3, 0.8, 1.4}) {
+    const Environment plane = area.section(place, bearing, 4e3);
+    for (double r = 0.0; r < 2600.0; r += 1.7)
+      ASSERT_NEAR(
           plane.bottom.depth_at(r),
           area.bottom_depth(place.x() + r * std::sin(bearing), place.y() + r * std::cos(bearing)),
           2e-3)
