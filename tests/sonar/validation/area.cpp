@@ -282,7 +282,7 @@ TEST(Area, ExpectedReverberationIsThatOfAllBearings) {
 TEST(Area, LandNeedsNoWaterAndNoKinds) {
   const double none = std::nan("");
   const auto beach = [](double x, double) { return 300.0 - 0.1 * x; };
-  const auto at_sea = [&](double x, double y) { return beach(x, y) > -200.0; };
+  const auto at_sea = [&](double x, double y) { return beach(x, y) > -400.0; };
   const support::MapOf volume(-30e3, 30e3, 31, 2, [&](double x, double y, std::size_t level) {
     return at_sea(x, y) ? 1500.0 + 5.0 * double(level) : none;
   });
