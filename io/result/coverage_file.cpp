@@ -43,7 +43,8 @@ const Column columns[] = {
      "cannot tell at edges; infinite: no ray comes",
      "dB"},
     {"reverberation_uncertainty_db", &CoverageLayer::reverberation_uncertainty_db,
-     "standard deviation of reverberation's level over the delays of the cell; infinite: it begins "
+     "standard deviation of reverberation's level over the cell and to its neighbours; infinite: "
+     "it begins "
      "or ends there",
      "dB"}};
 

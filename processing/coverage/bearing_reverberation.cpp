@@ -17,14 +17,15 @@ struct Sound {
   std::array<double, 3> phases;  // outward, beside that and in depth [rad]
   double steepness;              // [s/m] outward
   double elevation;              // it comes from [rad]
+  double level;                  // cosine of that
   bool by_itself;
 };
 
 class PieceSounds {
  public:
   PieceSounds(const ScatteringSheet& sheet, const PulseCoherence& pulse, const DelayAxis& axis,
-              const ElevationNodes& nodes, std::span<float> power)
-      : sheet_(sheet), pulse_(pulse), axis_(axis), nodes_(nodes), power_(power) {}
+              const ElevationNodes& nodes, const ReceivingPhones& phones, std::span<float> power)
+      : sheet_(sheet), pulse_(pulse), axis_(axis), nodes_(nodes), phones_(phones), power_(power) {}
 
   void add(const Vec2& place, const GroundPiece& piece, double area, std::uint64_t chance) {
     sheet_.pairs_at(place, pairs_, nullptr, 0.0, 0.0, chance);
@@ -49,16 +50,20 @@ class PieceSounds {
                       turns.through * (pair.out_ends->down + pair.back_ends->down)},
            .steepness = steep,
            .elevation = pair.back->launch_elevation,
+           .level = std::cos(pair.back->launch_elevation),
            .by_itself = pair.of_many});
     }
-    share_interference();
+    share_interference(piece.outward);
     for (const Sound& sound : sounds_) put(sound, piece.length);
   }
 
  private:
   /// Gives each of two sounds half of what they are together beyond what they are alone.
-  void share_interference() {
+  void share_interference(const Vec2& outward) {
     constexpr double nothing = 18.0;  // e⁻⁹
+    if (sounds_.empty()) return;
+    const double wavenumber = 2.0 * pi * sheet_.ends().frequency / sheet_.ends().receiver_speed;
+    const double spread = wavenumber * wavenumber * phones_.spread(outward, sounds_.front().delay);
     std::sort(sounds_.begin(), sounds_.end(),
               [](const Sound& a, const Sound& b) { return a.delay < b.delay; });
     for (std::size_t i = 0; i < sounds_.size(); ++i) {
@@ -71,6 +76,8 @@ class PieceSounds {
         double turned = 0.0;
         for (std::size_t k = 0; k < 3; ++k)
           turned += (a.phases[k] - b.phases[k]) * (a.phases[k] - b.phases[k]);
+        const double aside = a.level - b.level;
+        turned += spread * aside * aside;
         if (!(turned < nothing)) continue;
         const double both =
             std::exp(-0.5 * turned) *
@@ -105,12 +112,22 @@ class PieceSounds {
   const PulseCoherence& pulse_;
   const DelayAxis& axis_;
   const ElevationNodes& nodes_;
+  const ReceivingPhones& phones_;
   std::span<float> power_;
   PathPairs pairs_;
   std::vector<Sound> sounds_;
 };
 
 }  // namespace
+
+double ReceivingPhones::spread(const Vec2& outward, double delay) const {
+  double sum = 0.0;
+  for (const Vec2& offset : offsets) {
+    const double along = outward.dot(offset + delay * velocity);
+    sum += along * along;
+  }
+  return offsets.empty() ? 0.0 : sum / static_cast<double>(offsets.size());
+}
 
 std::vector<double> ring_edges(double reach, double height, double delay_step) {
   const double least =
@@ -123,8 +140,9 @@ std::vector<double> ring_edges(double reach, double height, double delay_step) {
 
 void add_reverberation(const ScatteringSheet& sheet, const ScatteringGround& ground, double bearing,
                        double width, const PulseCoherence& pulse, const DelayAxis& axis,
-                       const ElevationNodes& nodes, std::span<float> power) {
-  PieceSounds sounds(sheet, pulse, axis, nodes, power);
+                       const ElevationNodes& nodes, const ReceivingPhones& phones,
+                       std::span<float> power) {
+  PieceSounds sounds(sheet, pulse, axis, nodes, phones, power);
   for (std::size_t ring = 0; ring + 1 < ground.edges.size(); ++ring) {
     const double inner = ground.edges[ring], outer = ground.edges[ring + 1];
     const double range = 0.5 * (inner + outer);

@@ -27,13 +27,24 @@ struct ScatteringGround {
 /// eighth of the height above the ground at first, a 256th of their range at last.
 [[nodiscard]] std::vector<double> ring_edges(double reach, double height, double delay_step);
 
+/// Where phones are about the place that paths come back to, as an array under way receives.
+struct ReceivingPhones {
+  std::vector<Vec2> offsets;     ///< when the ping is sent [m]
+  Vec2 velocity = Vec2::Zero();  ///< [m/s]
+
+  /// Mean square of their distance along a direction, when sound is received [m²].
+  [[nodiscard]] double spread(const Vec2& outward, double delay) const;
+};
+
 /// Reverberation of a sector of bearing: mean power over delay and elevation, of a source of 1 at 1
 /// m and for a pulse of energy 1 s. The mean of |Σp|² over weights and pieces of ground, p of all
 /// pairs of paths: those whose phases turn against one another by Δ over a piece keep e^{−½Δ²}.
+/// Those that come back along other paths also turn from phone to phone, and with the ship's way.
 /// \param bearing, width  of the sector [rad]   \param pulse  who are received together
 /// \param power  [bins × nodes] that it is added to [1/s]
 void add_reverberation(const ScatteringSheet& sheet, const ScatteringGround& ground, double bearing,
                        double width, const PulseCoherence& pulse, const DelayAxis& axis,
-                       const ElevationNodes& nodes, std::span<float> power);
+                       const ElevationNodes& nodes, const ReceivingPhones& phones,
+                       std::span<float> power);
 
 }  // namespace asdic::detail

@@ -584,6 +584,15 @@ class Maker {
             .thickness = part.thickness};
   }
 
+  /// Where the phones are about the end of the paths, and how they go on.
+  [[nodiscard]] ReceivingPhones receiving_phones() const {
+    ReceivingPhones found;
+    const Vec2 aside = (receiver() - ends().receiver.position).head<2>();
+    for (const Vec3& phone : phones_) found.offsets.push_back(phone.head<2>() + aside);
+    found.velocity = geometry_.reference_place(settings_.array).velocity.head<2>();
+    return found;
+  }
+
   /// Reverberation of one bearing.
   void reverberation(std::size_t j, std::size_t number,
                      const std::shared_ptr<const BoundaryFan>& out,
@@ -609,7 +618,7 @@ class Maker {
         .thickness = part.thickness};
     std::vector<float> power(axis_.bins * nodes_.size(), 0.0F);
     add_reverberation(sheet, ground, made_.bearings[j], 2.0 * pi / settings_.bearings, *coherence_,
-                      axis_, nodes_, power);
+                      axis_, nodes_, receiving_phones(), power);
     std::vector<float>& density = density_[kind_of(part)];
     const std::size_t row = static_cast<std::size_t>(settings_.bearings) * nodes_.size();
     for (std::size_t bin = 0; bin < axis_.bins; ++bin)
@@ -671,15 +680,9 @@ class Maker {
         const double delay = std::isnan(layer.delay[cell])
                                  ? (2.0 * range + apart()) / paths_.speed_at(receiver())
                                  : double(layer.delay[cell]);
-        const auto at = [&](double time) {
-          double power = 0.0;
-          for (const std::vector<float>& density : density_)
-            if (!density.empty()) power += received(density, *beams[node], time);
-          return power;
-        };
-        const double reverberation = at(delay);
-        layer.reverberation_uncertainty_db[cell] = static_cast<float>(change_over_cell(
-            reverberation, at(delay - 0.5 * cell_delay()), at(delay + 0.5 * cell_delay())));
+        double reverberation = 0.0;
+        for (const std::vector<float>& density : density_)
+          if (!density.empty()) reverberation += received(density, *beams[node], delay);
         const BeamLevels levels{
             .echo_db = double(layer.echo_db[cell]),
             .reverberation_db = projector_.source_level_db + db_from_power(reverberation),
@@ -691,19 +694,27 @@ class Maker {
         layer.detection_probability[cell] =
             static_cast<float>(probability(excess + made_.threshold_db));
       }
+      tell_change_of_reverberation(layer, j * ranges);
     }
   }
 
-  /// Standard deviation of reverberation over the delays of a cell, and of what its fans leave open
-  /// [dB]. \param earlier, later  power at the cell's ends
-  [[nodiscard]] double change_over_cell(double power, double earlier, double later) const {
+  /// Standard deviation of reverberation over a cell, half of the way to its neighbours' levels,
+  /// and of what fans leave open. \param first  cell of a bearing
+  void tell_change_of_reverberation(CoverageLayer& layer, std::size_t first) const {
     // Measured against pings: docs/theory/coverage.md.
     const double of_fans = paths_.layered() ? 0.5 : 1.0;
-    if (!(power > 0.0)) return earlier > 0.0 || later > 0.0 ? infinity : 0.0;
-    const auto change = [&](double other) {
-      return other > 0.0 ? std::abs(db_from_power(other / power)) : infinity;
-    };
-    return std::hypot(of_fans, std::max(change(earlier), change(later)) / std::sqrt(3.0));
+    const std::vector<float>& level = layer.reverberation_db;
+    const auto ranges = static_cast<std::size_t>(settings_.ranges);
+    for (std::size_t i = 0; i < ranges; ++i) {
+      if (std::isnan(level[first + i])) continue;
+      double change = 0.0;
+      for (const std::size_t next : {i - 1, i + 1})
+        if (next < ranges && !std::isnan(level[first + next]) &&
+            level[first + next] != level[first + i])  // both may be none
+          change = std::max(change, std::abs(double(level[first + next] - level[first + i])));
+      layer.reverberation_uncertainty_db[first + i] =
+          static_cast<float>(std::hypot(of_fans, change / std::sqrt(3.0)));
+    }
   }
 
   /// Power in a beam at a delay.

@@ -193,21 +193,27 @@ EchoMean EchoMeans::over_phases() {
 /// ⟨max_t|y|²⟩ − ⟨|y|²⟩ at the loudest time: at each place of a cell another answer may be the
 /// loudest. A mean over few places, which the mean of the powers themselves is not.
 void EchoMeans::add_louder_times(EchoMean& found) {
-  constexpr int places = 8;
+  constexpr int places = 6;
+  constexpr double heard = 3e-3;  // over the loudest: fainter pairs choose no other time
   constexpr double first = 0.7548776662466927, second = 0.5698402909980532;  // even over a square
   const double width = std::sqrt(12.0);  // of what is even, in standard deviations
+  const auto loud = static_cast<std::size_t>(
+      std::partition_point(pairs_.begin(), pairs_.end(),
+                           [&](const Pair& p) { return p.power > heard * pairs_[0].power; }) -
+      pairs_.begin());
+  const std::span<const Pair> pairs(pairs_.data(), loud);
   answers_.clear();
   std::size_t at = 0;
   for (const Time& time : times_) {
-    if (time.at == found.delay) at = answers_.size() / pairs_.size();
-    for (const Pair& p : pairs_) answers_.push_back(pulse_(time.at - p.delay));
+    if (time.at == found.delay) at = answers_.size() / loud;
+    for (const Pair& p : pairs) answers_.push_back(pulse_(time.at - p.delay));
   }
   double louder = 0.0, open_louder = 0.0;
   for (int k = 0; k < places; ++k) {
     const double u = std::fmod(first * (k + 1), 1.0) - 0.5,
                  v = std::fmod(second * (k + 1), 1.0) - 0.5;
     places_.clear();
-    for (const Pair& p : pairs_) {
+    for (const Pair& p : pairs) {
       const auto turn = std::polar(1.0, -width * (u * p.along + v * p.across));
       places_.push_back(p.pressure * turn);
       places_.push_back(p.open * turn);
@@ -215,8 +221,8 @@ void EchoMeans::add_louder_times(EchoMean& found) {
     double most = 0.0, here = 0.0, open_most = 0.0, open_here = 0.0;
     for (std::size_t t = 0; t < times_.size(); ++t) {
       std::complex<double> sum = 0.0, open = 0.0;
-      const std::complex<double>* const answer = &answers_[t * pairs_.size()];
-      for (std::size_t i = 0; i < pairs_.size(); ++i) {
+      const std::complex<double>* const answer = &answers_[t * loud];
+      for (std::size_t i = 0; i < loud; ++i) {
         sum += places_[2 * i] * answer[i];
         open += places_[2 * i + 1] * answer[i];
       }
