@@ -113,7 +113,7 @@ std::span<const double> PlaceSounds::gains(const PathInterference& interference,
                                            const GroundPiece& piece, std::size_t parts) {
   gains_.assign(parts, 1.0);
   if (sounds_.size() < 2) return gains_;
-  constexpr std::size_t most = 32;
+  constexpr std::size_t most = 144;
   const auto strength = [](const Sound& s) { return std::norm(s.amplitude); };
   if (sounds_.size() > most) {
     std::nth_element(sounds_.begin(), sounds_.begin() + most, sounds_.end(),

@@ -57,7 +57,8 @@ class PlaceSounds {
   void add(const ScatteringSheet& sheet, const PathPair& pair, const GroundPiece& piece,
            double doppler, const Vec3& slowness, std::size_t part);
   /// Of the amplitudes of each part: what it is together with the others over what it is alone, as
-  /// a mean over the piece, the phones and the pulse. The 32 strongest sounds interfere.
+  /// a mean over the piece, the phones and the pulse. The 144 strongest sounds interfere, all pairs
+  /// of twelve groups.
   /// docs/theory/reverberation.md, "Covariance" \param parts  how many
   [[nodiscard]] std::span<const double> gains(const PathInterference& interference,
                                               const GroundPiece& piece, std::size_t parts);
