@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <numeric>
 
 namespace asdic::detail {
@@ -103,19 +104,26 @@ void ReceivedBounces::add(double delay, int surface, int bottom, double energy) 
   const bool beyond = surface > asked_.surface || bottom > asked_.bottom;
   by_most_.add(delay, std::max(surface, bottom), energy);
   by_numbers_.add(delay, beyond ? 1 : 0, energy);
+  ++paths_;
 }
 
 Bounces search_bounces(const PropagationSettings& settings, const BounceSearch& search,
                        const std::function<void(const PathLimits&, ReceivedBounces&)>& look) {
   const bool numbers = in_numbers(settings);
-  for (int most = std::min(search.first, search.most);; most = std::min(2 * most, search.most)) {
+  int before = fewest_bounces;
+  const auto next = [&](int most) {
+    before = most;
+    return std::min(static_cast<int>(std::ceil(search.growth * most)), search.most);
+  };
+  for (int most = std::min(search.first, search.most);; most = next(most)) {
     const Bounces asked = as_asked(settings, most);
     ReceivedBounces received(search.segments, search.latest, most, search.floor, asked);
     look(limits_of(unlimited(settings), most), received);
     const EnergyByBounces& by_most = received.by_most();
     const bool converged = by_most.converged(search.tolerance_db);
-    if (!converged && most < search.most) continue;
-    const int bounces = by_most.enough(search.tolerance_db);
+    const bool too_many = !converged && received.paths() > search.most_paths;
+    if (!converged && !too_many && most < search.most) continue;
+    const int bounces = too_many ? before : by_most.enough(search.tolerance_db);
     Bounces followed = numbers ? asked : as_asked(settings, bounces);
     followed.left_out_db =
         numbers ? received.by_numbers().left_out_db(0) : by_most.estimate_db(bounces, converged);
@@ -128,11 +136,16 @@ Bounces enough_bounces(const PropagationPaths& paths, const PropagationSettings&
                        bool judged) {
   if (in_numbers(settings) && !judged) return as_asked(settings);
   const bool timed = std::isfinite(latest);
-  const BounceSearch search{.most = !timed            ? most_for_ever
-                                    : paths.layered() ? most_between_places
-                                                      : most_over_slopes,
-                            .tolerance_db = 0.5 * negligible_db,  // an echo has two legs
-                            .latest = latest};
+  const bool map = paths.area() != nullptr;
+  const BounceSearch search{
+      .first = map ? fewest_bounces + 1 : 2 * fewest_bounces,
+      .growth = map ? 1.5 : 2.0,
+      .most = !timed            ? most_for_ever
+              : paths.layered() ? most_between_places
+                                : most_over_slopes,
+      .most_paths = map ? many_paths : std::numeric_limits<std::size_t>::max(),
+      .tolerance_db = 0.5 * negligible_db,  // an echo has two legs
+      .latest = latest};
   return search_bounces(settings, search, [&](PathLimits limits, ReceivedBounces& received) {
     limits.max_delay = latest;
     limits.diffraction = false;  // it has no bounces

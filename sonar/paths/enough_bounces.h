@@ -21,6 +21,9 @@ inline constexpr int fewest_bounces = 3;
 /// What "auto" may leave out of a level: more is told as a warning once it is `tolerable_db`.
 inline constexpr double negligible_db = 0.05, tolerable_db = 0.1;
 
+/// Paths to one place over a map, above which no more bounces are tried.
+inline constexpr std::size_t many_paths = 256;
+
 /// Bounces off either boundary that "auto" follows at most over slopes and fronts, where every one
 /// takes longer marches, and between two places in layered water, where all bounces of four times
 /// as many paths are held.
@@ -66,18 +69,24 @@ class ReceivedBounces {
         asked_(asked) {}
 
   void add(double delay, int surface, int bottom, double energy);
+  [[nodiscard]] std::size_t paths() const noexcept { return paths_; }
   [[nodiscard]] const EnergyByBounces& by_most() const noexcept { return by_most_; }
   [[nodiscard]] const EnergyByBounces& by_numbers() const noexcept { return by_numbers_; }
 
  private:
   EnergyByBounces by_most_, by_numbers_;  // by_numbers_: 0 within, 1 beyond
   Bounces asked_;
+  std::size_t paths_ = 0;
 };
 
 /// How many bounces are looked for, and where.
 struct BounceSearch {
-  int first = 2 * fewest_bounces;  ///< tried first, then twice as many
+  int first = 2 * fewest_bounces;  ///< tried first
+  double growth = 2.0;             ///< then so many times as many
   int most = 768;                  ///< tried at most
+  /// Of a try that is the last: over rough ground paths multiply with every bounce. Followed are
+  /// then the bounces of the try before.
+  std::size_t most_paths = std::numeric_limits<std::size_t>::max();
   double tolerance_db = negligible_db;
   std::size_t segments = 1;
   double latest = std::numeric_limits<double>::infinity();  ///< end of the segments
