@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
+from matplotlib.colors import TwoSlopeNorm
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
@@ -49,6 +50,7 @@ class Area:
     bottom: np.ndarray          # [b, r] [m]
     about: str                  # who listens to whom
     middle: str                 # "the array", and where on the Earth it is
+    beyond: str = ""            # what the file warns of maps that end within the reach
     tracks: dict = field(default_factory=dict)   # "platforms", "targets" → (names, [n, instants, 3])
     tags: dict = field(default_factory=dict)
 
@@ -87,8 +89,15 @@ def read(path) -> Area:
         middle = f"the array ({place})" if place else "the array"
         return Area(reader.title(), depth, bearing, span, reader.array("array_position"),
                     reader.array("source_position"), values, values["certainty"],
-                    values["uncertainty_db"], reader.array("bottom_depth"), about, middle, tracks,
-                    reader.tags())
+                    values["uncertainty_db"], reader.array("bottom_depth"), about, middle,
+                    of_the_map(attributes), tracks, reader.tags())
+
+
+def of_the_map(attributes) -> str:
+    """The warning that the map ends before the sound does; "" without one."""
+    told = [results.text({"w": w}, "w") for w in np.ravel(attributes.get("warnings", []))]
+    return next((w.split(": ", 1)[1] for w in told
+                 if w.startswith("environment.area: ") and "beyond it" in w), "")
 
 
 def nothing_to_show(area: Area, name: str) -> str | None:
@@ -138,25 +147,14 @@ def frame(axes, area: Area) -> None:
     for ring in axes.get_xticks():
         if 0.0 < ring <= far:
             t = np.linspace(0.0, 2.0 * np.pi, 361)
-            axes.plot(ring * np.sin(t), ring * np.cos(t), color=style.INK, lw=0.5, alpha=0.35,
+            axes.plot(ring * np.sin(t), ring * np.cos(t), color=style.GREY, lw=0.6, alpha=0.6,
                       zorder=4)
 
 
 def contours(axes, area: Area) -> list:
     """Of the sea floor's depth. → handles"""
-    low, high = np.nanmin(area.bottom), np.nanmax(area.bottom)
-    if not high - low > 1.0:
-        return []
-    step = (high - low) / 6.0
-    nice = 10.0 ** np.floor(np.log10(step))
-    step = nice * min((f for f in (1, 2, 5, 10) if f * nice >= step), default=10)
-    levels = np.arange(np.ceil(low / step) * step, high, step)
-    if not levels.size:
-        return []
-    made = axes.contour(*middles(area), closed(area.bottom), levels=levels, colors=[style.INK],
-                        linewidths=0.7, alpha=0.75, zorder=3)
-    axes.clabel(made, fmt="%g", fontsize=7)
-    return [Line2D([], [], color=style.INK, lw=0.7, label="depth of the sea floor / m")]
+    levels = style.depth_levels(area.bottom)
+    return style.depth_lines(axes, *middles(area), closed(area.bottom), levels)
 
 
 def marks(axes, area: Area) -> list:
@@ -182,12 +180,48 @@ def marks(axes, area: Area) -> list:
     return handles
 
 
-def limits_of(name: str, values):
-    if name == "signal_excess":
-        return -20.0, 20.0
+def limits_of(area: Area, name: str, values):
+    """Of colours, by the water's area; in decibels multiples of 5. Of the signal excess 0 is the middle:
+    from 10 to 60 dB below it, from 10 to 30 dB above it. Others span 20 to 60 dB: 5 % of the area may
+    lie below, and above 2 %, or more where else not even a quarter of the area lay within.
+    """
     if name == "detection_probability":
         return 0.0, 1.0
-    return style.colour_limits(values, floor_percentile=5.0)
+    weight = np.broadcast_to(area.range, values.shape)
+    low, *tops = style.weighted_percentiles(values, weight, (5.0, 75.0, 90.0, 95.0, 98.0))
+    low, high = 5.0 * np.floor(low / 5.0), 5.0 * np.ceil(tops[-1] / 5.0)
+    if name == "signal_excess":     # fmax and fmin: NaN where there is none
+        return float(np.fmax(np.fmin(low, -10.0), -60.0)), float(np.fmin(np.fmax(high, 10.0), 30.0))
+    if np.isnan(high):
+        return 0.0, 20.0
+    known = weight[np.isfinite(values)].sum()
+    for top in reversed(tops):
+        high = 5.0 * np.ceil(top / 5.0)
+        if weight[(values >= high - 60.0) & (values <= high)].sum() >= 0.25 * known:
+            break
+    return float(np.clip(low, high - 60.0, high - 20.0)), float(high)
+
+
+def shades_of(name: str, limits) -> dict:
+    """Colour map and scale: white is a signal excess of 0, however far the ends are."""
+    low, high = limits
+    if name == "signal_excess" and low < 0.0 < high:
+        return dict(cmap=style.DIVERGING, norm=TwoSlopeNorm(0.0, low, high))
+    return dict(cmap=style.DIVERGING if name == "signal_excess" else style.MAP, vmin=low, vmax=high)
+
+
+def without_value(name: str, values, certainty) -> list:
+    """Cells that have no colour: → which, shade, what they are."""
+    ground, shadow = certainty == NO_WATER, certainty == NO_PATH
+    parts = [(ground, style.GROUND, "sea floor above that depth")]
+    if name == "reverberation_level":   # it comes from elsewhere than the target's place
+        silent = np.isneginf(values) & ~ground
+        parts.append((silent, style.NOTHING, "no reverberation comes then"))
+    else:
+        silent = shadow & ~ground
+        parts.append((silent, style.NOTHING, "shadow: no ray comes"))
+    finite = np.isfinite(values)
+    return parts + [(~finite & ~ground & ~silent, style.GREY, "no value")]
 
 
 def draw_map(area: Area, name: str, layer: int = 0, axes=None, limits=None):
@@ -197,16 +231,13 @@ def draw_map(area: Area, name: str, layer: int = 0, axes=None, limits=None):
     values = area.values[what.dataset][layer]
     certainty = area.certainty[layer]
     shown = np.where(np.isfinite(values) & (certainty != NO_WATER), values, np.nan)
-    limits = limits or limits_of(name, shown)
+    limits = limits or limits_of(area, name, shown)
     x, y = edges(area)
-    cmap = style.DIVERGING if name == "signal_excess" else style.MAP
-    mesh = axes.pcolormesh(x, y, shown, cmap=cmap, vmin=limits[0], vmax=limits[1], rasterized=True,
-                           zorder=1)
+    mesh = axes.pcolormesh(x, y, shown, rasterized=True, zorder=1, **shades_of(name, limits))
     frame(axes, area)
     handles = []
-    for where, shade, label in ((certainty == NO_WATER, style.GROUND, "sea floor above that depth"),
-                                (certainty == NO_PATH, style.NOTHING, "shadow: no ray comes")):
-        if name == "reverberation_level" and shade == style.NOTHING or not where.any():
+    for where, shade, label in without_value(name, values, certainty):
+        if not where.any():
             continue
         axes.pcolormesh(x, y, np.where(where, 1.0, np.nan), cmap=style.flat_map(shade), vmin=0.0,
                         vmax=1.0, rasterized=True, zorder=2)
@@ -217,9 +248,15 @@ def draw_map(area: Area, name: str, layer: int = 0, axes=None, limits=None):
         handles += half_detected(axes, area, layer)
     handles += contours(axes, area) + marks(axes, area)
     style.colour_bar(fig, mesh, axes, what.label, style.beyond(shown, limits))
-    style.subtitle(axes, f"{area.title}  ·  target at {area.depth[layer]:g} m  ·  {area.about}")
+    style.subtitle(axes, with_warning(area, f"{area.title}  ·  target at {area.depth[layer]:g} m"
+                                            f"  ·  {area.about}"))
     style.legend_below(axes, handles, ncol=3)
     return fig
+
+
+def with_warning(area: Area, text: str) -> str:
+    """A subtitle, and that the map ends within the reach."""
+    return f"{text}  ·  {area.beyond}" if area.beyond else text
 
 
 def hatch_unsure(axes, area: Area, layer: int) -> list:
@@ -266,7 +303,7 @@ def draw_sea_floor(area: Area, axes=None, limits=None):
     frame(axes, area)
     handles = contours(axes, area) + marks(axes, area)
     style.colour_bar(fig, mesh, axes, "depth of the sea floor / m", style.beyond(area.bottom, limits))
-    style.subtitle(axes, area.title)
+    style.subtitle(axes, with_warning(area, area.title))
     style.legend_below(axes, handles, ncol=3)
     return fig
 
@@ -280,7 +317,7 @@ def draw_sections(area: Area, axes=None, limits=None):
     for k in range(count):
         row = int(round(k * area.bearing.size / count)) % area.bearing.size
         axes.plot(area.range / 1e3, area.bottom[row], color=shades[k], lw=1.5,
-                  label=f"towards {area.bearing[row]:.3g}°")
+                  label=f"towards {bearing_text(area.bearing[row])}")
     for depth in area.depth:
         axes.axhline(depth, color=style.INK, lw=1.0, ls=(0, (4, 3)))
         axes.annotate(f"target {depth:g} m", (1.0, depth), (-4, 4), xycoords=("axes fraction", "data"),
@@ -292,9 +329,14 @@ def draw_sections(area: Area, axes=None, limits=None):
     axes.set_xlabel("horizontal range from the array / km")
     axes.set_ylabel("depth / m")
     axes.grid(True)
-    style.subtitle(axes, area.title)
+    style.subtitle(axes, with_warning(area, area.title))
     style.legend_below(axes, ncol=5)
     return fig
+
+
+def bearing_text(bearing: float) -> str:
+    """47°, or 47.5°: with a decimal where it is not whole."""
+    return f"{bearing:.0f}°" if abs(bearing - round(bearing)) < 0.05 else f"{bearing:.1f}°"
 
 
 @style.picture

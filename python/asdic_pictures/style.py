@@ -17,6 +17,7 @@ from matplotlib import patheffects, ticker
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
+from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.textpath import text_to_path
 from matplotlib.transforms import ScaledTranslation
@@ -390,6 +391,43 @@ def colour_limits(db, echo_db: float = -np.inf, floor_percentile: float = 20.0,
     needed = 5.0 * np.ceil(min(echo_db, good.max()) / 5.0)
     top = max(top, needed)
     return float(max(low, top - most)), float(top)
+
+
+def weighted_percentiles(values, weight, percents) -> np.ndarray:
+    """Of finite values, each by its weight; NaN where there is none."""
+    good = np.isfinite(values)
+    if not good.any():
+        return np.full(len(percents), np.nan)
+    order = np.argsort(values[good])
+    part = np.cumsum(weight[good][order])
+    place = np.searchsorted(part, np.asarray(percents) / 100.0 * part[-1])
+    return np.asarray(values)[good][order][np.minimum(place, order.size - 1)].astype(float)
+
+
+def depth_levels(depth) -> np.ndarray:
+    """About six even depths [m] between the least and the greatest; none of a flat floor."""
+    good = depth[np.isfinite(depth)]
+    if not good.size or not np.ptp(good) > 1.0:
+        return np.zeros(0)
+    low, high = float(good.min()), float(good.max())
+    step = (high - low) / 6.0
+    nice = 10.0 ** np.floor(np.log10(step))
+    step = nice * min((f for f in (1, 2, 5, 10) if f * nice >= step), default=10)
+    return np.arange(np.ceil(low / step) * step, high, step)
+
+
+def depth_lines(axes, x, y, depth, levels, zorder: float = 3.0) -> list:
+    """Contours of the sea floor, in a halo that keeps them readable on any colour. → handles"""
+    if not np.size(levels):
+        return []
+    made = axes.contour(x, y, depth, levels=levels, colors=[INK], linewidths=0.8, zorder=zorder)
+    halo = [patheffects.withStroke(linewidth=2.0, foreground=PAPER)]
+    for part in getattr(made, "collections", [made]):   # one a level before matplotlib 3.8
+        part.set_path_effects(halo)
+    for text in axes.clabel(made, fmt="%g", fontsize=7):
+        text.set_path_effects(halo)
+        text.set_zorder(zorder + 0.1)
+    return [Line2D([], [], color=INK, lw=0.8, label="depth of the sea floor / m")]
 
 
 def image(axes, x_edges, y_edges, values, limits):
