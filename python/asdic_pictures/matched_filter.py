@@ -76,6 +76,46 @@ def peaks(time, db):
     return time[starts], most
 
 
+def blast(data, time, loudest, echoes):
+    """Which times belong to the transmitter's own sound: from the loudest of all for as long as a pulse
+    is, before and after, where that is far above the rest and no echo.
+    """
+    mine = np.abs(time - time[int(np.argmax(loudest))]) <= data.pulse_duration
+    echo = any((np.abs(e.delay - time[int(np.argmax(loudest))]) < data.pulse_duration).any()
+               for e in echoes)
+    if echo or mine.all() or loudest.max() < loudest[~mine].max() + 10.0:
+        return np.zeros(time.size, bool)
+    return mine
+
+
+def level_limits(data, time, lines, echoes):
+    """Of the upper panel: from 10 dB under the last line's fifth percentile to 5 dB above all that comes
+    beside the transmitter's own sound. A span of more than 80 dB is cut at its top, but not the echo of a
+    target; then it is at most 100 dB.
+    """
+    shown = [peaks(time, db) for db in lines]
+    at, loudest = shown[0][0], np.max([most for _, most in shown], axis=0)
+    if not (loudest > -300.0).any():
+        return -55.0, 5.0
+    rest = ~blast(data, at, loudest, echoes)
+    last = shown[-1][1][rest]
+    received = last[last > -300.0]
+    top = loudest[rest].max() + 5.0
+    low = np.percentile(received, 5) - 10.0 if received.size else top - 60.0
+    delays = np.concatenate([np.zeros(0)] + [e.delay[e.strong(at[0], at[-1])] for e in echoes])
+    near = [loudest[np.argmin(np.abs(at - t))] + 5.0 for t in delays]
+    cut = max([low + 80.0, *near])
+    return float(max(low, min(top, cut) - 100.0)), float(min(top, cut))
+
+
+def tell_what_is_above(axes) -> None:
+    """A line that is cut is not lower: its name in the legend says how high it goes."""
+    for line in axes.get_lines():
+        highest = np.max(line.get_ydata())
+        if highest > axes.get_ylim()[1]:
+            line.set_label(f"{line.get_label()} (above the axis up to {highest:.0f} dB)")
+
+
 @style.picture
 def draw(data, ping, axes=None, limits=None):
     last = data.start + data.valid_samples[ping] / data.sample_rate
@@ -91,14 +131,11 @@ def draw(data, ping, axes=None, limits=None):
         lines.append((beam, style.INK, f"beam towards {name}"))
     for db, colour, label in lines:
         whole.plot(*peaks(time, db), color=colour, lw=0.9, label=label)
-    everything = np.concatenate([peaks(time, db)[1] for db, _, _ in lines])
-    received = everything[everything > -300.0]
-    top = received.max(initial=0.0) + 5.0
-    low = np.percentile(peaks(time, lines[-1][0])[1], 5) - 10.0 if received.size else top - 60.0
-    whole.set_ylim(*(limits or (max(low, top - 80.0), top)))
+    whole.set_ylim(*(limits or level_limits(data, time, [db for db, _, _ in lines], echoes)))
     style.time_axis(whole, data.start, last)
     style.subtitle(whole, f"{data.heading(ping)}  ·  {data.pulse_kind} pulse of "
                    f"{data.pulse_duration:g} s, {data.bandwidth:.0f} Hz", marks=True)
+    tell_what_is_above(whole)
     handles = whole.get_legend_handles_labels()[0] + mark_edges(whole, echoes)
     if best:
         near = axes[1, 0]
