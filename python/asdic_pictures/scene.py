@@ -35,6 +35,7 @@ class Scene:
     source_depth: np.ndarray            # of a run without a sonar [m]
     receivers: tuple                    # depths, ranges [m], whether they are one by one
     origin: str = ""                    # of the map: where on the Earth it is
+    floor: tuple | None = None          # of an area: east [n], north [m], depth [m, n] [m], NaN: no map
     tags: dict = field(default_factory=dict)
 
     @property
@@ -75,4 +76,16 @@ def read(path) -> Scene:
                      phones, numbers("source_depth"),
                      (numbers("receiver_depth"), numbers("receiver_range"),
                       bool(reader.number("irregular", 0.0))),
-                     style.on_earth(reader.file.attrs), reader.tags())
+                     style.on_earth(reader.file.attrs), floor_of(reader), reader.tags())
+
+
+def floor_of(reader) -> tuple | None:
+    """The sea floor of an area's map, as files of pings have it."""
+    names = [f"environment/area_{what}" for what in ("east", "north", "depth")]
+    if not all(reader.has(name) for name in names):
+        return None
+    east, north, depth = (reader.array(name) for name in names)
+    if depth.shape != (north.size, east.size) or min(depth.shape) < 2:
+        raise InputError(reader.path, f"environment/area_depth of shape {depth.shape}",
+                         f"{(north.size, east.size)}, 2 by 2 at least")
+    return east, north, depth

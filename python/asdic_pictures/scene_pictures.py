@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.lines import Line2D
-from matplotlib.patches import Wedge
+from matplotlib.patches import Patch, Wedge
 
 from . import sea as seas
 from . import style
@@ -44,8 +44,8 @@ def nothing(scene: Scene):
 # ------------------------------------------------------------------------------------ geometry
 
 
-def draw_map(axes, scene: Scene) -> None:
-    """From above, with the ways that things go until the last record ends."""
+def draw_map(axes, scene: Scene) -> list:
+    """From above, with the ways that things go until the last record ends. → handles of the sea floor"""
     far = 1.0
     for kind, things in scene.things.items():
         for k, track in enumerate(things.track):
@@ -69,6 +69,25 @@ def draw_map(axes, scene: Scene) -> None:
     axes.grid(True)
     for side in axes.spines.values():
         side.set_visible(True)
+    return draw_floor(axes, scene, middle, far)
+
+
+def draw_floor(axes, scene: Scene, middle, far: float) -> list:
+    """Depths of the area's map below the tracks, land brown, grey where no map is. → handles"""
+    if scene.floor is None:
+        return []
+    east, north, depth = scene.floor
+    x, y = east / 1e3, north / 1e3
+    seen = np.ix_(np.abs(y - middle[1]) <= 1.5 * far, np.abs(x - middle[0]) <= 1.5 * far)
+    part = depth[seen] if depth[seen].size > 16 else depth
+    made = []
+    for where, shade, label in ((depth < 0.0, style.GROUND, "land"),
+                                (np.isnan(depth), style.NOTHING, "beyond the map")):
+        if where.any():
+            axes.pcolormesh(x, y, np.where(where, 1.0, np.nan), cmap=style.flat_map(shade), vmin=0.0,
+                            vmax=1.0, rasterized=True, zorder=0.5, shading="nearest")
+            made.append(Patch(fc=shade, ec=style.GREY, label=label))
+    return style.depth_lines(axes, x, y, depth, style.depth_levels(part), 1.5) + made
 
 
 def along_section(scene: Scene, places) -> np.ndarray:
@@ -134,7 +153,7 @@ def geometry(scene: Scene, axes=None, limits=None):
         return fig
     fig, (left, right) = style.figure("Geometry", 5.4, axes, ncols=2,
                                       gridspec_kw={"width_ratios": [1.0, 1.25]})
-    draw_map(left, scene)
+    floor = draw_map(left, scene)
     draw_section(right, scene)
     pings = "1 ping" if scene.pings == 1 else f"{scene.pings} pings"
     style.subtitle(left, f"{scene.title}  ·  {pings} at {scene.frequency:g} Hz, the ways are those "
@@ -146,7 +165,7 @@ def geometry(scene: Scene, axes=None, limits=None):
     if scene.beamwidth.size and np.isfinite(scene.beamwidth[0]):
         made.append(Wedge((0, 0), 1, 0, 1, color=style.ORANGE, alpha=0.3, lw=0,
                           label=f"beam, {scene.beamwidth[0]:.3g}° wide, straight on"))
-    style.legend_below(left, made, ncol=5)
+    style.legend_below(left, made + floor, ncol=5)
     return fig
 
 
