@@ -183,7 +183,7 @@ def marks(axes, area: Area) -> list:
 def limits_of(area: Area, name: str, values):
     """Of colours, by the water's area; in decibels multiples of 5. Of the signal excess 0 is the middle:
     from 10 to 60 dB below it, from 10 to 30 dB above it. Others span 20 to 60 dB: 5 % of the area may
-    lie below, and above 2 %, or more where else not even a quarter of the area lay within.
+    lie below, and above 2 %, or up to 25 % where only so a quarter of the area lies within.
     """
     if name == "detection_probability":
         return 0.0, 1.0
@@ -196,8 +196,9 @@ def limits_of(area: Area, name: str, values):
         return 0.0, 20.0
     known = weight[np.isfinite(values)].sum()
     for top in reversed(tops):
-        high = 5.0 * np.ceil(top / 5.0)
-        if weight[(values >= high - 60.0) & (values <= high)].sum() >= 0.25 * known:
+        lower = 5.0 * np.ceil(top / 5.0)
+        if weight[(values >= lower - 60.0) & (values <= lower)].sum() >= 0.25 * known:
+            high = lower
             break
     return float(np.clip(low, high - 60.0, high - 20.0)), float(high)
 
@@ -283,7 +284,7 @@ def half_detected(axes, area: Area, layer: int) -> list:
     """The line of a signal excess of 0: detected half of the time. → handles"""
     excess = area.values["signal_excess_db"][layer]
     known = smoothed(np.where(np.isnan(excess), -40.0, np.clip(excess, -40.0, 40.0)))
-    if known.min() > 0.0 or known.max() < 0.0:
+    if known.min() >= 0.0 or known.max() <= 0.0:
         return []
     axes.contour(*middles(area), closed(known), levels=[0.0], colors=[style.ORANGE], linewidths=1.3,
                  zorder=5)

@@ -12,8 +12,8 @@ ROOT = Path(__file__).resolve().parents[3]
 sys.path[:0] = [str(ROOT / "python"), str(ROOT / "tests" / "support")]
 
 import make_ping_file as synthetic  # noqa: E402
-from asdic_pictures import (bearing_time, levels, matched_filter, rays, style,  # noqa: E402
-                            sweep)
+from asdic_pictures import (area, bearing_time, levels, matched_filter, rays,  # noqa: E402
+                            results, scene, scene_pictures, style, sweep)
 from asdic_pictures.data import PingFile  # noqa: E402
 from matplotlib.colors import to_hex  # noqa: E402
 
@@ -36,6 +36,9 @@ class Case(unittest.TestCase):
         data = PingFile(path)
         self.addCleanup(data.file.close)
         return data
+
+    def labels(self, fig):
+        return [t.get_text() for a in fig.axes if a.get_legend() for t in a.get_legend().get_texts()]
 
 
 class History(Case):
@@ -106,9 +109,6 @@ class Colours(Case):
 
 
 class Legends(Case):
-    def labels(self, fig):
-        return [t.get_text() for a in fig.axes if a.get_legend() for t in a.get_legend().get_texts()]
-
     def test_echo_line_of_several_targets_has_no_targets_colour(self):
         data = self.look(targets=[(2500.0, 40.0, 60.0), (3200.0, 100.0, 200.0)])
         self.assertNotIn(levels.echo_colour(data.echoes(0)), style.TARGETS)
@@ -153,6 +153,114 @@ class MatchedFilter(Case):
         for db in (mean, beam):
             self.assertLess(abs(time[np.nanargmax(db)] - 3.2), 0.5 / 200.0 + 0.003)
         self.assertAlmostEqual(np.nanmax(beam), 100.0, delta=0.5)
+
+    def test_the_axis_leaves_out_the_transmitters_own_sound_and_says_so(self):
+        """A blast of 190 dB at the start over noise: noise and the echo fill the axis."""
+        def inject(f):
+            phones = np.zeros((8, 3))
+            p = f["pressure"][0].astype(float)
+            synthetic.add_echo(p, phones, self.settings, 0.0, np.zeros(3), 1.0, 190.0, 1500.0)
+            f["pressure"][0] = p
+        data = self.look(inject, bandwidth=200.0)
+        echo = data.echoes(0)[0]
+        fig = matched_filter.draw(data, 0)
+        low, high = fig.axes[0].get_ylim()
+        time, mean, beam = matched_filter.filtered(data, 0, echo)
+        later = time > 0.6
+        self.assertGreater(np.mean((beam[later] > low) & (beam[later] < high)), 0.9)
+        self.assertGreater(high, max(mean[later].max(), beam[later].max()))
+        self.assertLess(high, 150.0)
+        self.assertTrue(any("above the axis up to" in t for t in self.labels(fig)))
+
+
+class AreaMaps(Case):
+    """Maps whose cells are known."""
+
+    def area(self, bearings=36, ranges=50, reach=80e3, beyond="", **values):
+        shape = (1, bearings, ranges)
+        turn = 360.0 / bearings
+        span = (np.arange(ranges) + 0.5) * reach / ranges
+        given = {v.dataset: np.zeros(shape) for v in area.MAPS.values()}
+        given |= {name: np.broadcast_to(v, shape).astype(float) for name, v in values.items()}
+        given.setdefault("certainty", np.zeros(shape))
+        floor = np.broadcast_to(1000.0 + span / 40.0, shape[1:])
+        return area.Area("made", np.array([80.0]), turn * (np.arange(bearings) + 0.5), span,
+                         np.array([0.0, 0.0, 6.0]), np.array([0.0, 0.0, 6.0]), given,
+                         given["certainty"], np.zeros(shape), floor, "it", "the array", beyond)
+
+    def test_colours_are_those_of_the_area(self):
+        """Levels that fall evenly with the area within, from 124 to -176 dB: 2 % above, 60 dB below."""
+        span = (np.arange(50) + 0.5) / 50.0
+        found = self.area(echo_db=124.0 - 300.0 * span**2)
+        low, high = area.draw(found, "echo_level").axes[0].collections[0].get_clim()
+        self.assertEqual((low, high), (60.0, 120.0)) 
+        even = self.area(echo_db=60.0 - 50.0 * span**2)
+        low, high = area.draw(even, "echo_level").axes[0].collections[0].get_clim()
+        self.assertLessEqual(abs(low - 12.5), 5.0)
+        self.assertLessEqual(abs(high - 59.0), 5.0)
+        for spike in (150.0, 400.0):    # over 3 % of the area: the rest has colours
+            few = self.area(echo_db=np.where(span**2 < 0.03, spike, 20.0 - 20.0 * span**2))
+            low, high = area.draw(few, "echo_level").axes[0].collections[0].get_clim()
+            self.assertEqual((low, high), (0.0, 20.0))
+
+    def test_no_detection_is_white(self):
+        span = (np.arange(50) + 0.5) / 50.0
+        fig = area.draw(self.area(signal_excess_db=60.0 - 200.0 * span), "signal_excess")
+        mesh = fig.axes[0].collections[0]
+        self.assertEqual(mesh.get_clim(), (-60.0, 30.0))
+        self.assertEqual(to_hex(mesh.cmap(mesh.norm(0.0))), to_hex(mesh.cmap(0.5)))
+
+    def test_cells_without_a_value_are_told(self):
+        values = np.zeros((1, 36, 50))
+        values[..., :5] = -np.inf
+        fig = area.draw(self.area(reverberation_db=values), "reverberation_level")
+        self.assertIn("no reverberation comes then", self.labels(fig))
+        certainty = np.zeros((1, 36, 50))
+        certainty[..., :5], certainty[..., 40:] = area.NO_PATH, area.NO_WATER
+        values[..., 40:], values[0, 0, 20] = np.nan, np.nan
+        told = self.labels(area.draw(self.area(echo_db=values, certainty=certainty), "echo_level"))
+        for words in ("shadow: no ray comes", "sea floor above that depth", "no value"):
+            self.assertIn(words, told)
+        self.assertNotIn("no value", self.labels(area.draw(self.area(), "echo_level")))
+
+    def test_depths_can_be_seen_on_any_colour(self):
+        fig = area.draw(self.area(), "detection_probability")
+        shades = {to_hex(style.INK)}
+        lines = [c for c in fig.axes[0].collections
+                 if len(c.get_edgecolor()) == 1 and to_hex(c.get_edgecolor()[0]) in shades
+                 and c.get_path_effects()]
+        self.assertGreater(len(lines), 0)
+
+    def test_the_maps_end_and_bearings_are_told(self):
+        attributes = {"warnings": [b"propagation: rays", b"environment.area: sound is followed to 80 km, "
+                                   b"and muir.nc ends 20.1 km away at 255 degrees; beyond it its edge goes on"]}
+        beyond = area.of_the_map(attributes)
+        self.assertIn("20.1 km away", beyond)
+        self.assertEqual(area.of_the_map({}), "")
+        for name in ("sea_floor", "sections", "echo_level"):
+            title = area.draw(self.area(beyond=beyond), name).axes[0].get_title(loc="left")
+            self.assertIn("20.1 km away", title.replace("\n", " "))
+        told = self.labels(area.draw(self.area(bearings=72), "sections"))
+        self.assertIn("towards 137.5°", told)
+        self.assertIn("towards 145°", self.labels(area.draw(self.area(), "sections")))
+
+
+class Geometry(Case):
+    def test_depths_of_an_area_are_on_the_map(self):
+        x = np.linspace(-10e3, 10e3, 21)
+        depth = np.tile(np.where(x > 9e3, np.nan, -1000.0 * x / 4e3 + 500.0), (21, 1))
+        track = np.zeros((1, 2, 3))
+        things = {kind: scene.Things([kind], track + [0.0, where, 50.0])
+                  for kind, where in (("platforms", 0.0), ("transmitters", 0.0), ("targets", 4e3))}
+        sea = results.Sea(np.linspace(0.0, 5e3, 5), np.zeros(5), np.full(5, 500.0),
+                          np.array([0.0, 500.0]), np.array([1500.0, 1500.0]))
+        made = scene.Scene("made", sea, 1e3, 0.0, 5.0, 1, things, np.zeros(1), np.full(1, np.nan), [],
+                           np.zeros(0), (np.zeros(0), np.zeros(0), False), "", (x, x, depth))
+        told = self.labels(scene_pictures.geometry(made))
+        for words in ("depth of the sea floor / m", "land", "beyond the map"):
+            self.assertIn(words, told)
+        made.floor = None
+        self.assertNotIn("land", self.labels(scene_pictures.geometry(made)))
 
 
 if __name__ == "__main__":
