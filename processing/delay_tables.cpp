@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -30,9 +31,18 @@ DelayTable DelayTables::made(const Plane& plane, double platform_depth, double d
     return solver->find(platform_depth, depth, ranges, frequency_, limits);
   };
   if (in_numbers(settings_)) return {ranges, find(limits_of(settings_)), limits_of(settings_)};
+  // Over rough ground paths multiply with every bounce; a place is told by few of them.
+  constexpr std::size_t told_apart = 16, none_too_many = std::numeric_limits<std::size_t>::max();
+  const bool map = paths_.area() != nullptr;
   std::vector<Arrivals> found;
   Bounces enough =
-      search_bounces(settings_, {.most = 2 * most_bounces, .segments = segments, .latest = longest},
+      search_bounces(settings_,
+                     {.first = map ? fewest_bounces + 1 : 2 * fewest_bounces,
+                      .growth = map ? 1.5 : 2.0,
+                      .most = 2 * most_bounces,
+                      .most_paths = map ? told_apart * ranges_ : none_too_many,
+                      .segments = segments,
+                      .latest = longest},
                      [&](const PathLimits& limits, ReceivedBounces& received) {
                        found = find(limits);
                        for (std::size_t i = 0; i < ranges_; ++i)
