@@ -17,11 +17,13 @@ std::string area_text(const CoverageSummary& summary) {
                   summary.bearings, summary.ranges, 1e-3 * summary.reach, summary.array,
                   summary.transmitter, summary.frequency);
   for (const CoverageSummary::Layer& layer : summary.layers)
-    text += fmt::format(
-        "depth      {:g} m: detected half of the time and more in {:.3g} % of the water, half of "
-        "all round to {:.3g} km; no ray comes to {:.3g} %\n",
-        layer.depth, 100.0 * layer.detected_share, 1e-3 * layer.farthest,
-        100.0 * layer.no_path_share);
+    text += !layer.in_water ? fmt::format("depth      {:g} m: in the water nowhere\n", layer.depth)
+                            : fmt::format(
+                                  "depth      {:g} m: detected half of the time and more in {:.3g} "
+                                  "% of the water, half of "
+                                  "all round to {:.3g} km; no ray comes to {:.3g} %\n",
+                                  layer.depth, 100.0 * layer.detected_share, 1e-3 * layer.farthest,
+                                  100.0 * layer.no_path_share);
   return text;
 }
 

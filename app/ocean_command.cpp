@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -80,7 +81,7 @@ int ocean(const OceanOptions& options) {
   }
   const OceanSources sources = sources_of(options);
   const OceanRequest request = request_of(options);
-  const OceanSample sample = sample_ocean(sources, request);
+  OceanSample sample = sample_ocean(sources, request);
   std::optional<OceanSection> section;
   if (options.range) section = sample_section(sources, request);
   std::optional<OceanArea> area;
@@ -93,9 +94,10 @@ int ocean(const OceanOptions& options) {
     return 0;
   }
   output->write(fragment);
-  print(fmt::format("{}: {} to {:g} m, water {:g} m deep\n", options.output,
-                    count_of(sample.depth.size(), "level"), sample.depth.back(),
-                    sample.water_depth));
+  const auto tenths = [](double depth) { return to_text(std::round(10.0 * depth) / 10.0); };
+  print(fmt::format("{}: {} to {} m, water {} m deep\n", options.output,
+                    count_of(sample.depth.size(), "level"), tenths(sample.depth.back()),
+                    tenths(sample.water_depth)));
   if (area) print(fmt::format("{}: {:g} km square\n", area->file.string(), area->side / 1000.0));
   for (const std::string& origin : sample.origins) print(fmt::format("data: {}\n", origin));
   for (const std::string& note : sample.notes) print(fmt::format("note: {}\n", note));

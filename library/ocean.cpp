@@ -55,7 +55,7 @@ Ocean ocean(const OceanPlace& place) {
   for (const detail::DataFile& file : sources.all()) files.push_back(file.path);
   const auto work = [&] {
     const detail::OceanRequest request = request_of(place);
-    const detail::OceanSample sample = detail::sample_ocean(sources, request);
+    detail::OceanSample sample = detail::sample_ocean(sources, request);
     Ocean found{.water_depth = sample.water_depth,
                 .wind_speed = sample.wind_speed,
                 .origins = sample.origins,

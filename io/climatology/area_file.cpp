@@ -262,7 +262,7 @@ void write_wind(Hdf5File& file, const OceanSources& sources, const OceanRequest&
 }  // namespace
 
 OceanArea write_ocean_area(const OceanSources& sources, const OceanRequest& request,
-                           const OceanSample& centre, double side, OutputFile&& output) {
+                           OceanSample& centre, double side, OutputFile&& output) {
   OceanArea area{.side = side, .file = output.target()};
   const Box box = box_about(request, side);
   const Floor floor(sources.bathymetry, {});
@@ -270,20 +270,23 @@ OceanArea write_ocean_area(const OceanSources& sources, const OceanRequest& requ
   tell_reach(bathymetry, box, floor.tiles(), "bathymetry", request, area.notes);
   double deepest = centre.water_depth;
   std::size_t holes = 0;
+  std::string first_hole;  // "file.nc: variable, … at 33.7 N -62.5 E"
+  const auto rounded = [](double degree) { return std::round(1e4 * degree) / 1e4; };
   std::vector<double> elevation;
   for (std::size_t k = 0; k < bathymetry.values.size(); ++k) {
     const double value = bathymetry.values[k];
-    elevation.push_back(-floor.checked(floor.sign() * value,
-                                       {bathymetry.northings[k / bathymetry.eastings.size()],
-                                        bathymetry.eastings[k % bathymetry.eastings.size()]}));
-    if (std::isnan(value))
-      ++holes;
-    else
-      deepest = std::max(deepest, -elevation.back());
+    const Place here{bathymetry.northings[k / bathymetry.eastings.size()],
+                     bathymetry.eastings[k % bathymetry.eastings.size()]};
+    elevation.push_back(-floor.checked(floor.sign() * value, here));
+    if (std::isnan(value) && ++holes == 1)
+      first_hole = floor.tiles().short_name_at(here.latitude, here.longitude) + ", the first at " +
+                   climatology::place(rounded(here.latitude), rounded(here.longitude));
+    if (!std::isnan(value)) deepest = std::max(deepest, -elevation.back());
   }
   if (holes > 0)
     area.notes.push_back(std::to_string(holes) + " of " + std::to_string(elevation.size()) +
-                         " cells of the bathymetry are holes");
+                         " cells of the bathymetry are holes in " + first_hole +
+                         "; a second --bathymetry on the same grid fills them");
   Hdf5File file = Hdf5File::create(output.part());
   write_filetype(file, "asdic ocean area", "1.0");
   file.set_attribute("", "title",
@@ -301,6 +304,14 @@ OceanArea write_ocean_area(const OceanSources& sources, const OceanRequest& requ
   write_water(file, Water(sources, request.when, request.latitude, request.longitude), request, box,
               deepest, area);
   write_sediment(file, sources, request, box, floor, bathymetry, axes, area);
+  if (sources.sediment.empty() && area.classes.size() > 1) {
+    std::string kinds;
+    for (const Sediment& one : area.classes) kinds += (kinds.empty() ? "" : ", ") + one.name;
+    std::erase_if(centre.notes,
+                  [&](const std::string& note) { return note.starts_with(centre.sediment_by); });
+    area.notes.push_back("the data say nothing of the sediment: by the depth of each cell, " +
+                         kinds + " were taken; --sediment takes a map");
+  }
   write_wind(file, sources, request, box, area);
   if (!area.notes.empty()) file.set_attribute("", "notes", area.notes);
   file.close();

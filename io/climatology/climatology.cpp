@@ -117,7 +117,8 @@ void read_profile(const OceanSources& files, OceanSample& ocean, SourceList& sou
   ocean.speed = column.speed;
   if (ocean.depth.back() < ocean.water_depth)
     ocean.notes.push_back(
-        "the profile ends at " + to_text(ocean.depth.back()) + " m; below, its last " +
+        "the profile ends at " + to_text(std::round(10.0 * ocean.depth.back()) / 10.0) +
+        " m; below, its last " +
         (ocean.speed.empty() ? "temperature and salinity go on" : "speed grows with pressure") +
         " to the bottom at " + to_text(std::round(ocean.water_depth)) + " m");
   for (const std::string& origin : water.origins()) ocean.origins.push_back(origin);

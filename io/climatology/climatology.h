@@ -77,10 +77,10 @@ struct OceanArea {
 };
 
 /// Writes what lies within half a side of the place, in the data's own resolution, as CF netCDF-4
-/// (docs/formats/ocean-area.md). \throws InputError, RunError
+/// (docs/formats/ocean-area.md). \param centre  its note of a sediment taken by the depth gives way
+/// to one of the area's, where that has several \throws InputError, RunError
 [[nodiscard]] OceanArea write_ocean_area(const OceanSources& sources, const OceanRequest& request,
-                                         const OceanSample& centre, double side,
-                                         OutputFile&& output);
+                                         OceanSample& centre, double side, OutputFile&& output);
 
 /// The [environment] of an area.
 [[nodiscard]] std::string write_area_fragment(const OceanSample& centre, const OceanArea& area);

@@ -155,4 +155,32 @@ std::vector<NetcdfArray> read_netcdf_arrays(const std::filesystem::path& path,
   return isolated::Unpacked(child.ask("")).get<std::vector<NetcdfArray>>();
 }
 
+std::vector<std::string> netcdf_variables(const std::filesystem::path& path) {
+  require_file(path, "a netCDF file");
+  prepare_netcdf();
+  isolated::Child child(path, "netCDF", [&] {
+    auto file = std::make_shared<const NetcdfFile>(path);
+    return [file](std::string_view) {
+      int count = 0;
+      file->check(nc_inq_nvars(file->id(), &count), "variables");
+      std::vector<std::string> all, maps;
+      for (int id = 0; id < count; ++id) {
+        char text[NC_MAX_NAME + 1] = {};
+        int rank = 0;
+        file->check(nc_inq_varname(file->id(), id, text), "variables");
+        file->check(nc_inq_varndims(file->id(), id, &rank), text);
+        const std::string name = text;
+        all.push_back(name);
+        if (rank > 1 && name.find("bnds") == std::string::npos &&
+            name.find("bounds") == std::string::npos)
+          maps.push_back(name);
+      }
+      isolated::Packed out;
+      out.put(maps.empty() ? all : maps);
+      return out.bytes();
+    };
+  });
+  return isolated::Unpacked(child.ask("")).get<std::vector<std::string>>();
+}
+
 }  // namespace asdic::detail

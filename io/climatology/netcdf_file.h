@@ -44,4 +44,8 @@ struct NetcdfArray {
 [[nodiscard]] std::vector<NetcdfArray> read_netcdf_arrays(const std::filesystem::path& path,
                                                           const std::vector<std::string>& names);
 
+/// Names of a file's variables that have two dimensions or more, but for bounds of axes; of all if
+/// there are none. \throws InputError if it is no netCDF file
+[[nodiscard]] std::vector<std::string> netcdf_variables(const std::filesystem::path& path);
+
 }  // namespace asdic::detail

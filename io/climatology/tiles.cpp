@@ -9,6 +9,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "io/climatology/ascii_grid.h"
+#include "io/climatology/netcdf_file.h"
 #include "io/climatology/raster_source.h"
 #include "io/climatology/words.h"
 #include "raytrace/area/map_frame.h"
@@ -145,6 +146,21 @@ std::optional<DataGrid> find_grid(const DataFile& file, const GriddedQuantity& q
   return DataGrid::find(file.path, names_wanted(file, quantity));
 }
 
+/// What to name of a file that has not got what was asked for: the variables that it has.
+std::string variables_wanted(const DataFile& file, const GriddedQuantity& quantity) {
+  constexpr std::size_t most = 8;
+  const bool raster = raster_kind(file.path).has_value();
+  const std::vector<std::string> names = raster ? quantity.names : netcdf_variables(file.path);
+  std::string list;
+  for (std::size_t i = 0; i < std::min(names.size(), most); ++i)
+    list += (i > 0 ? ", " : "") + names[i];
+  if (names.size() > most) list += ", ...";
+  if (names.empty()) return "a file with variables on a grid";
+  if (raster) return "a band with a description such as " + list + ", or FILE:BAND";
+  if (!file.variable.empty()) return "one of " + list + ", or FILE:VARIABLE of another file";
+  return "a usual name or standard_name of it, or FILE:VARIABLE with one of " + list;
+}
+
 double mean_step(const std::vector<double>& axis) {
   if (axis.size() < 2) return 1.0;
   return std::abs(axis.back() - axis.front()) / static_cast<double>(axis.size() - 1);
@@ -175,15 +191,11 @@ DataGrid require_grid(const DataFile& file, const GriddedQuantity& quantity, boo
                                   " (install Debian's ferret-datasets: scripts/setup.sh "
                                   "--climatology, or name a file of your own)"});
   auto grid = find_grid(file, quantity, true);
-  if (!grid) {
-    std::string list;
-    for (const std::string& name : quantity.names) list += (list.empty() ? "" : ", ") + name;
-    throw InputError(
-        {.where = file.path.string(),
-         .got = file.variable.empty() ? "no variable of " + quantity.name
-                                      : "no variable " + in_quotes(file.variable),
-         .expected = "one with the name or standard_name " + list + ", or FILE:VARIABLE"});
-  }
+  if (!grid)
+    throw InputError({.where = file.path.string(),
+                      .got = file.variable.empty() ? "no variable of " + quantity.name
+                                                   : "no variable " + in_quotes(file.variable),
+                      .expected = variables_wanted(file, quantity)});
   if (!grid->geographic() && !projected)
     throw InputError(
         {.where = file.path.string() + ": " + grid->variable(),
@@ -439,8 +451,9 @@ std::optional<Tiles::Column> Tiles::column(double latitude, double longitude) co
     const auto point = tile.grids[0].nearest_point(longitude, latitude);
     const double end = column.depths.back();
     if (!point || !add(tile, *point)) continue;
-    column.continued = "below " + to_text(end) + " m the " + quantity_.name + " is that of " +
-                       tile.grids[0].path().filename().string() + " (" + tile.time.said + ")";
+    column.continued = "below " + to_text(std::round(10.0 * end) / 10.0) + " m the " +
+                       quantity_.name + " is that of " + tile.grids[0].path().filename().string() +
+                       " (" + tile.time.said + ")";
   }
   return column;
 }

@@ -172,7 +172,13 @@ TimeChoice in_the_year(const std::vector<DataGrid>& files, std::vector<Step> ste
   if (const auto choice = wider(steps, date.month)) return *choice;
   const Step& nearest = gone <= gap / 2.0 ? before : after;
   if (std::min(gone, gap - gone) > 31.0) throw no_such_time(files, steps, {.date = date});
-  return mean_of({nearest}, 0, "of month " + std::to_string(nearest.at.month));
+  TimeChoice choice = mean_of({nearest}, 0, "of month " + std::to_string(nearest.at.month));
+  if (nearest.at.month != date.month) {
+    const double apart = std::round(10.0 * std::min(gone, gap - gone)) / 10.0;
+    choice.said = "the nearest time, of month " + std::to_string(nearest.at.month) + ", " +
+                  to_text(apart) + (apart == 1.0 ? " day from " : " days from ") + iso(date);
+  }
+  return choice;
 }
 
 TimeChoice of_date(const std::vector<DataGrid>& files, const std::vector<Step>& steps,

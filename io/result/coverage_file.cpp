@@ -71,7 +71,8 @@ CoverageSummary::Layer summed(double depth, const std::vector<double>& ranges, s
     }
     if (2 * found >= bearings) layer.farthest = ranges[i];
   }
-  if (water > 0.0) {
+  layer.in_water = water > 0.0;
+  if (layer.in_water) {
     layer.detected_share = detected / water;
     layer.no_path_share = shadow / water;
   }

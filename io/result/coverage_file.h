@@ -23,6 +23,7 @@ struct CoverageSummary {
     double detected_share =
         0.0;                ///< of the area of water at that depth, with P_d of a half and more
     double farthest = 0.0;  ///< range up to which half of the bearings have that [m]
+    bool in_water = false;  ///< whether any cell is
     double no_path_share = 0.0;  ///< of the area of water, that no ray reaches
   };
   std::vector<Layer> layers;

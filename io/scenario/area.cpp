@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/error.h"
 #include "core/quantities.h"
 #include "core/text.h"
 #include "io/climatology/map_reader.h"
@@ -216,8 +217,19 @@ AreaReading::AreaReading(TomlTable table, const OceanReading& reading,
                              " is on projected axes, which may be turned against the meridian: "
                              "results have no latitudes and longitudes but those of "
                              "environment.origin");
-  if (!floor_->covers(0.0, 0.0))
-    throw table_.fault("bathymetry", "a map that holds the scenario's [0, 0]", floor.name);
+  if (!floor_->covers(0.0, 0.0)) {
+    const auto rounded = [](double degree) { return std::round(1e4 * degree) / 1e4; };
+    throw table_.fault(
+        "bathymetry",
+        "a map that holds the scenario's [0, 0]: " +
+            (floor.geographic
+                 ? "[environment.origin] says that it is at " +
+                       climatology::place(rounded(origin->latitude), rounded(origin->longitude))
+                 : "environment.area.easting and environment.area.northing, now " +
+                       to_text(settings_.easting) + " and " + to_text(settings_.northing) +
+                       " m, say where it is on the grid"),
+        floor.name + ", " + extent_text(*floor_, true));
+  }
   if (settings_.sound_speed) {
     const OpenedMap water =
         open(*settings_.sound_speed, climatology::sound_speed_quantity(), "sound_speed", true);
@@ -269,6 +281,52 @@ std::shared_ptr<const Area> AreaReading::build(const Environment& ocean) {
                                                  .materials = std::move(materials),
                                                  .wind = wind_},
                                       ocean, settings_);
+}
+
+std::string extent_text(const ScalarMap& map, bool on_its_axes) {
+  const MapAxis &across = map.grid().x(), &up = map.grid().y();
+  const double half_u = 0.5 * across.mean_spacing(), half_v = 0.5 * up.mean_spacing();
+  const MapFrame& frame = map.frame();
+  const auto span = [](double begin, double end, double digits) {
+    return to_text(std::round(digits * begin) / digits) + " to " +
+           to_text(std::round(digits * end) / digits);
+  };
+  const double west = across.begin() - half_u, east = across.end() + half_u,
+               south = up.begin() - half_v, north = up.end() + half_v;
+  const auto metres = [&](const char* about, double x0, double x1, double y0, double y1) {
+    return "x from " + std::string(about) + span(x0, x1, 1.0) + " m, y from " + about +
+           span(y0, y1, 1.0) + " m";
+  };
+  if (!frame.is_geographic()) {
+    if (on_its_axes) return metres("", west, east, south, north);
+    const Vec2 a = frame.on_map(west, south), b = frame.on_map(east, north);
+    return metres("", a.x(), b.x(), a.y(), b.y());
+  }
+  const std::string degrees = span(south, north, 1e4) + " N, " + span(west, east, 1e4) + " E";
+  constexpr double wide = 20.0;  // [°], beyond which metres of the map are no measure
+  if (on_its_axes || east - west > wide || north - south > wide) return degrees;
+  const GeographicPlace& origin = frame.origin();
+  return degrees + ", " +
+         metres("about ", frame.on_map(west, origin.latitude).x(),
+                frame.on_map(east, origin.latitude).x(), frame.on_map(origin.longitude, south).y(),
+                frame.on_map(origin.longitude, north).y());
+}
+
+bool seems_all_land(const ScalarMap& map) {
+  constexpr std::size_t lines = 16;
+  const auto across = map.grid().x().places(), up = map.grid().y().places();
+  bool any = false;
+  for (std::size_t j = 0; j < lines; ++j)
+    for (std::size_t i = 0; i < lines; ++i) {
+      const Vec2 place = map.frame().on_map(across[i * (across.size() - 1) / (lines - 1)],
+                                            up[j * (up.size() - 1) / (lines - 1)]);
+      try {
+        if (map.at(place.x(), place.y()).value > 0.0) return false;
+        any = true;
+      } catch (const InputError&) {  // a hole
+      }
+    }
+  return any;
 }
 
 void describe_area(Fields& field, const AreaSettings* settings) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "core/fields.h"
 #include "io/scenario/ocean.h"
@@ -43,6 +44,12 @@ class AreaReading {
   std::optional<ClassMap> seabed_;
   std::optional<ScalarMap> wind_;
 };
+
+/// How far a map reaches, for messages: "x from -20 to 20 m, y from -5 to 5 m", where the grid is
+/// projected on its own axes; of a geographic grid in degrees and, about [0, 0], in metres.
+[[nodiscard]] std::string extent_text(const ScalarMap& map, bool on_its_axes = false);
+/// Whether nothing of a map of depths is below 0, as far as 256 of its places tell.
+[[nodiscard]] bool seems_all_land(const ScalarMap& map);
 
 /// [environment.area], for a walker that does not read. \param settings  none: there is no area
 void describe_area(Fields& field, const AreaSettings* settings);

@@ -6,8 +6,11 @@
 
 #include "core/fields.h"
 #include "core/text.h"
+#include "io/climatology/sources.h"
+#include "io/scenario/area.h"
 #include "io/scenario/propagation.h"
 #include "io/scenario/sections.h"
+#include "raytrace/area/earth_places.h"
 #include "sonar/ping/ping_memory.h"
 #include "sonar/ping/stream.h"
 #include "sonar/scenario/carried.h"
@@ -85,7 +88,8 @@ std::string at_time(double time) { return " at " + to_text(time) + " s"; }
 class WaterColumn {
  public:
   WaterColumn(const Scenario& scenario, const Vec3& place)
-      : varies_(scenario.environment.surface.shape || scenario.environment.bottom.shape),
+      : scenario_(&scenario),
+        varies_(scenario.environment.surface.shape || scenario.environment.bottom.shape),
         area_(scenario.area != nullptr),
         on_map_(!area_ || scenario.area->floor().covers(place.x(), place.y())),
         place_(place),
@@ -97,10 +101,12 @@ class WaterColumn {
     return on_map_ && depth > top_ && depth < bottom_;
   }
   [[nodiscard]] std::string expected() const {
-    const std::string where = to_text(std::round(place_.x())) + " m east, " +
-                              to_text(std::round(place_.y())) + " m north";
-    if (!on_map_) return "a place on the map of environment.area.bathymetry, not " + where;
-    if (area_ && bottom_ <= top_) return "a place at sea: " + where + " is land";
+    const std::string where = area_ ? where_on_map() : "";
+    if (!on_map_)
+      return "a place on the map of environment.area.bathymetry (" +
+             scenario_->area->floor().name() + ", " + extent_text(scenario_->area->floor()) +
+             "), not " + where;
+    if (area_ && bottom_ <= top_) return "a place at sea: " + where + " is land" + land_text();
     const std::string between = "a depth between the surface (" + rounded(top_) +
                                 " m) and the bottom (" + rounded(bottom_) + " m)";
     if (area_) return between + " there, " + where;
@@ -109,10 +115,36 @@ class WaterColumn {
   }
 
  private:
+  /// "1000 m east, 0 m north (40 N -19.9883 E)"
+  [[nodiscard]] std::string where_on_map() const {
+    std::string where = to_text(std::round(place_.x())) + " m east, " +
+                        to_text(std::round(place_.y())) + " m north";
+    const EarthPlaces earth(scenario_->origin, scenario_->area.get());
+    if (!earth.known()) return where;
+    const GeographicPlace there = earth.at(place_.x(), place_.y());
+    const auto rounded_degree = [](double degree) { return std::round(1e4 * degree) / 1e4; };
+    return where + " (" +
+           climatology::place(rounded_degree(there.latitude),
+                              rounded_degree(std::remainder(there.longitude, 360.0))) +
+           ")";
+  }
+  /// Whose word it is, and what may be wrong about it.
+  [[nodiscard]] std::string land_text() const {
+    const ScalarMap& floor = scenario_->area->floor();
+    const double height = top_ - floor.at(place_.x(), place_.y()).value;
+    std::string text =
+        ", " + to_text(std::round(10.0 * height) / 10.0) + " m high, by " + floor.name();
+    if (seems_all_land(floor))
+      text +=
+          "; all of that map seems to be land: if its values are depths, the variable's name, "
+          "standard_name or long_name says so with the word \"depth\"";
+    return text;
+  }
   [[nodiscard]] std::string rounded(double depth) const {
     return to_text(varies_ || area_ ? std::round(10.0 * depth) / 10.0 : depth);
   }
 
+  const Scenario* scenario_;
   bool varies_, area_, on_map_;
   Vec3 place_;
   double x_, top_, bottom_;

@@ -22,6 +22,11 @@ void make_files_absolute(TomlValue& value, const std::filesystem::path& folder) 
     }
 }
 
+std::string file_named(const TomlValue& value) {
+  const auto* text = std::get_if<std::string>(&value.data);
+  return text == nullptr ? "" : *text;
+}
+
 /// `include = "ocean.toml"`: a file with an [environment] and nothing else, whose values stand
 /// where the scenario gives none.
 void merge_include(TomlValue& root, const std::filesystem::path& folder) {
@@ -38,7 +43,11 @@ void merge_include(TomlValue& root, const std::filesystem::path& folder) {
     if (entry.key != "environment")
       throw InputError({.where = entry.value.origin + ": " + entry.key,
                         .got = "a key of the whole scenario in an included file",
-                        .expected = "[environment] alone"});
+                        .expected = root.find("study") == nullptr
+                                        ? "[environment] alone"
+                                        : "[environment] alone; a study names a whole scenario by "
+                                          "scenario = \"" +
+                                              file_named(*include) + "\" in [study]"});
   make_files_absolute(fragment, path.parent_path());
   merge_defaults(root, fragment);
 }

@@ -269,8 +269,25 @@ class Maker {
             "environment: over slopes and fronts the picture of the area is right as a mean over "
             "cells; a cell by itself may be off by its uncertainty_db");
     tell_what_hides_echoes();
+    tell_depths_without_water();
     const std::string bounces = lacking(scenario_.propagation, made_.followed, "the picture");
     tell_of(!bounces.empty(), bounces);
+  }
+
+  /// Targets below the sea floor wherever one looks.
+  void tell_depths_without_water() {
+    float deepest = -std::numeric_limits<float>::infinity();
+    for (const float depth : made_.bottom_depth)
+      if (depth > deepest) deepest = depth;
+    for (const CoverageLayer& layer : made_.layers)
+      if (std::all_of(layer.certainty.begin(), layer.certainty.end(), [](std::int8_t one) {
+            return one == std::int8_t(CoverageCertainty::no_water);
+          }))
+        made_.warnings.push_back(
+            "--depth: " + to_text(layer.depth) +
+            " m is in the water nowhere within the reach, whose deepest place has " +
+            to_text(std::round(10.0 * double(deepest)) / 10.0) +
+            " m: nothing is known of a target there");
   }
 
   /// Of what the array receives beside echoes, reverberation and noise.

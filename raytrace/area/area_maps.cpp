@@ -12,12 +12,13 @@ namespace {
 
 /// "31.502 N -65.49 E", or "1200 m east, 300 m north".
 std::string place_text(const MapFrame& frame, double u, double v) {
-  const auto rounded = [](double x, double unit) { return to_text(std::round(x / unit) * unit); };
   if (!frame.is_geographic()) {
     const Vec2 place = frame.on_map(u, v);
-    return rounded(place.x(), 1.0) + " m east, " + rounded(place.y(), 1.0) + " m north";
+    return to_text(std::round(place.x())) + " m east, " + to_text(std::round(place.y())) +
+           " m north";
   }
-  return rounded(v, 1e-4) + " N " + rounded(u, 1e-4) + " E";
+  const auto rounded = [](double degree) { return to_text(std::round(1e4 * degree) / 1e4); };
+  return rounded(v) + " N " + rounded(u) + " E";
 }
 
 /// Longitudes of a grid that begins elsewhere.
@@ -85,7 +86,11 @@ double ScalarMap::spacing(double x, double y) const noexcept {
 
 void ScalarMap::check(double value, double u, double v) const {
   if (std::isnan(value))
-    throw_hole(origin_.name, frame_, u, v, "a value everywhere that sound is followed to");
+    throw_hole(
+        origin_.name, frame_, u, v,
+        "a value everywhere that sound is followed to: a shorter reach, another file, or one "
+        "by asdic ocean --area with a second --bathymetry on the same grid, which fills "
+        "holes");
 }
 
 MapValue ScalarMap::at(double x, double y) const {

@@ -537,8 +537,10 @@ class Messages(Folder):
             return " ".join(f"--{k.replace('_', '-')} {v}" for k, v in {**good, **other}.items() if v) + " --data none"
 
         self.refused(words(bathymetry="none.nc"), "none.nc: found no such file", "netCDF file of bathymetry")
-        self.refused(words(temperature="gebco.nc"), "gebco.nc: found no variable of temperature")
-        self.refused(words(temperature="hycom.nc:warmth"), 'hycom.nc: found no variable "warmth"')
+        self.refused(words(temperature="gebco.nc"), "gebco.nc: found no variable of temperature",
+                     "or FILE:VARIABLE with one of elevation")
+        self.refused(words(temperature="hycom.nc:warmth"), 'hycom.nc: found no variable "warmth"',
+                     "expected one of water_temp, salinity, or FILE:VARIABLE")
         self.refused(words(), "gebco.nc: elevation: found 35 N -60.5 E, out of its grid (30.9", "holds the place",
                      place="--latitude 35 --longitude -60.5")
         self.refused(words(salinity="none.nc"), "none.nc: found no such file")
@@ -694,6 +696,54 @@ sample_rate = 4000.0
         # The speeds are those of the profile, level by level.
         one = self.ocean("--bathymetry west.nc --temperature hycom.nc --month 1 --data none")[0]["sound_speed"]
         self.assertEqual(one["kind"], "temperature-salinity")
+
+    def test_holes_classes_and_depths_are_told(self):
+        gebco(self.folder / "gebco.nc", 30.7, 31.3, -60.6, -59.4)
+        with netCDF4.Dataset(self.folder / "gebco.nc", "a") as f:
+            lat, lon = f["lat"][:], f["lon"][:]
+            j, i = int(np.argmin(abs(lat - 30.95))), int(np.argmin(abs(lon + 60.05)))
+            f["elevation"].missing_value = np.int16(-32000)
+            f["elevation"][j, i:i + 3] = -32000
+        gebco(self.folder / "whole.nc", 30.7, 31.3, -60.6, -59.4)
+        hycom(self.folder / "hycom.nc", [210_396])
+        place = f"ocean --latitude {SUMMIT[0]} --longitude {SUMMIT[1]} --area 40km --temperature hycom.nc --data none -o place.toml"
+        text = self.asdic(place + " --bathymetry gebco.nc")
+        self.assertRegex(text, r"note: 3 of \d+ cells of the bathymetry are holes in gebco.nc: elevation, "
+                         rf"the first at {round(float(lat[j]), 4)} N {round(float(lon[i]), 4)} E; a second --bathymetry")
+        for told in (text, (self.folder / "place.toml").read_text()):
+            self.assertIn("by the depth of each cell, sandy mud, abyssal clay were taken; --sediment takes a map", told)
+            self.assertNotIn("was taken; --sediment", told)
+        # The remedy that the note names: a second file of the same grid.
+        self.assertNotIn("holes", self.asdic(place + " --bathymetry gebco.nc --bathymetry whole.nc --force"))
+        with netCDF4.Dataset(self.folder / "place.nc") as f:
+            self.assertFalse(np.isnan(np.ma.filled(f["elevation"][:], np.nan)).any())
+
+    def test_depths_of_targets_below_the_floor_everywhere(self):
+        (self.folder / "flat.toml").write_text("""[environment.sound_speed]
+kind = "isovelocity"
+[environment.bottom]
+kind = "fluid"
+depth = 200.0
+[platform]
+position = [0.0, 0.0, 50.0]
+[transmitter]
+source_level_db = 215.0
+[pulse]
+kind = "cw"
+frequency = 1000.0
+duration = 0.1
+[array]
+kind = "horizontal"
+phones = 1
+spacing = 0.7
+[pings]
+recording_duration = 2.0
+""")
+        text = self.asdic("area flat.toml --depth 3000,100 --bearings 4 --ranges 5 -o flat.h5")
+        self.assertIn("--depth: 3000 m is in the water nowhere within the reach, whose deepest place has 200 m", text)
+        self.assertIn("3000 m: in the water nowhere", text)
+        self.assertNotIn("--depth: 100 m", text)
+        self.assertIn("3000 m: in the water nowhere", self.asdic("info flat.h5"))
 
     def test_of_tiles_that_end(self):
         gebco(self.folder / "gebco.nc", 30.7, 31.3, -60.6, -60.0)

@@ -208,6 +208,95 @@ variable = "sediment"
               testing::AllOf(HasSubstr("target"), HasSubstr("a place on the map")));
 }
 
+// The map is 39.6975 to 40.3025 N and 20.3025 to 19.6975 W: ±0.3025° of latitude are 33 588 m.
+TEST_F(AreaFiles, APlaceOffTheMapIsToldWithTheMapsExtent) {
+  EXPECT_THAT(fault(place + layered + sonar +
+                    "[[target]]\nposition = [0.0, 90000.0, 50.0]\nstrength_db = 10.0\n"),
+              testing::AllOf(HasSubstr("heights.nc: elevation, 39.6975 to 40.3025 N"),
+                             HasSubstr("y from about -335"), HasSubstr("to 335"),
+                             HasSubstr("0 m east, 90000 m north (40.810")));
+  std::string elsewhere = place;
+  elsewhere.replace(elsewhere.find("40.0"), 4, "45.0");
+  EXPECT_THAT(fault(elsewhere + layered + sonar),
+              testing::AllOf(HasSubstr("heights.nc: elevation, 39.6975 to 40.3025 N"),
+                             HasSubstr("45 N -20 E")));
+}
+
+// Of a map of depths that look like heights all is land; of one with an island, that place alone.
+TEST_F(AreaFiles, LandIsToldByMapHeightAndPlace) {
+  const auto write = [&](auto&& height) {
+    NetcdfWriter file(folder_ / "land.nc");
+    file.axis("lat", even(39.0, 0.25, 9), {{"units", "degrees_north"}});
+    file.axis("lon", even(-21.0, 0.25, 9), {{"units", "degrees_east"}});
+    std::vector<double> heights;
+    for (std::size_t k = 0; k < 81; ++k) heights.push_back(height(k));
+    file.variable("elevation", NC_FLOAT, {"lat", "lon"}, heights, {{"units", "m"}});
+  };
+  const std::string land = std::string(place).replace(place.find("heights.nc"), 10, "land.nc") +
+                           "interpolation = \"faceted\"\n";
+  write([](std::size_t) { return 700.0; });
+  EXPECT_THAT(fault(land + layered + sonar),
+              testing::AllOf(HasSubstr("0 m east, 0 m north (40 N -20 E) is land, 700 m high, by "
+                                       "land.nc: elevation"),
+                             HasSubstr("all of that map seems to be land"), HasSubstr("depth")));
+  write([](std::size_t k) { return k == 40 ? 300.0 : -1000.0; });
+  EXPECT_THAT(fault(land + layered + sonar),
+              testing::AllOf(HasSubstr("is land, 300 m high, by land.nc: elevation"),
+                             testing::Not(HasSubstr("seems"))));
+}
+
+TEST_F(AreaFiles, AGridThatDoesNotHoldTheOriginIsToldWithItsAxes) {
+  {
+    NetcdfWriter file(folder_ / "plane.nc");
+    file.axis("y", even(3'500'000.0, 500.0, 9), {{"units", "m"}, {"axis", "Y"}});
+    file.axis("x", even(480'000.0, 500.0, 9), {{"units", "m"}, {"axis", "X"}});
+    file.variable("depth", NC_FLOAT, {"y", "x"}, std::vector<double>(81, 700.0), {{"units", "m"}});
+  }
+  const std::string plane = std::string(place).replace(place.find("heights.nc"), 10, "plane.nc");
+  EXPECT_THAT(fault(plane + layered + sonar),
+              testing::AllOf(HasSubstr("plane.nc: depth, x from 479750 to 484250 m, y from 3499750 "
+                                       "to 3504250 m"),
+                             HasSubstr("environment.area.easting"),
+                             HasSubstr("environment.area.northing")));
+  EXPECT_THAT(fault(plane + layered + sonar +
+                    "[[target]]\nposition = [0.0, 3000.0, 50.0]\nstrength_db = 10.0\n"
+                    "[environment.area]\neasting = 482000.0\nnorthing = 3502000.0\n"),
+              HasSubstr("x from -2250 to 2250 m, y from -2250 to 2250 m"));
+}
+
+TEST_F(AreaFiles, AMissingVariableIsToldWithThoseThatThereAre) {
+  EXPECT_THAT(fault(place + "variable = \"tide\"\n" + layered + sonar),
+              HasSubstr("expected one of elevation, or FILE:VARIABLE"));
+  EXPECT_THAT(fault(place + "[environment.area.wind]\nfile = \"heights.nc\"\n" + layered + sonar),
+              testing::AllOf(HasSubstr("no variable of wind"),
+                             HasSubstr("or FILE:VARIABLE with one of elevation"),
+                             testing::Not(HasSubstr("sfcWind"))));
+}
+
+// Every 49th of a degree: 20 + 3/49 are 20.0612.
+TEST_F(AreaFiles, AHoleIsToldByARoundedPlaceAndWithARemedy) {
+  {
+    NetcdfWriter file(folder_ / "hole.nc");
+    file.axis("lat", even(39.0, 1.0 / 49.0, 99), {{"units", "degrees_north"}});
+    file.axis("lon", even(-21.0, 1.0 / 49.0, 99), {{"units", "degrees_east"}});
+    std::vector<double> heights(99 * 99, -1000.0);
+    heights[49 * 99 + 46] = -32767.0;
+    file.variable("elevation", NC_SHORT, {"lat", "lon"}, heights, {{"units", "m"}},
+                  {{"_FillValue", -32767.0}});
+  }
+  const std::string holed = std::string(place).replace(place.find("heights.nc"), 10, "hole.nc");
+  const Scenario s = read(holed + layered + sonar);
+  const Vec2 hole = s.area->frame().on_map(-20.0 - 3.0 / 49.0, 40.0);
+  try {
+    static_cast<void>(s.area->bottom_depth(hole.x(), hole.y()));
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::AllOf(HasSubstr("hole.nc: elevation at 40 N -20.0612 E"),
+                                             HasSubstr("a shorter reach, another file"),
+                                             HasSubstr("second --bathymetry")));
+  }
+}
+
 // Wind grows by 4 m/s with every degree to the north. Noise is that of the wind over the array, a
 // plane is as rough as the mean wind along it makes the sea, and what is given as a number stays.
 TEST_F(AreaFiles, NoiseAndRoughnessAreThoseOfTheWindWhereTheyAre) {
