@@ -270,6 +270,7 @@ OceanArea write_ocean_area(const OceanSources& sources, const OceanRequest& requ
   tell_reach(bathymetry, box, floor.tiles(), "bathymetry", request, area.notes);
   double deepest = centre.water_depth;
   std::size_t holes = 0;
+  std::set<int> at_sea;    // kinds of sea floor, by the depth
   std::string first_hole;  // "file.nc: variable, … at 33.7 N -62.5 E"
   const auto rounded = [](double degree) { return std::round(1e4 * degree) / 1e4; };
   std::vector<double> elevation;
@@ -281,6 +282,7 @@ OceanArea write_ocean_area(const OceanSources& sources, const OceanRequest& requ
     if (std::isnan(value) && ++holes == 1)
       first_hole = floor.tiles().short_name_at(here.latitude, here.longitude) + ", the first at " +
                    climatology::place(rounded(here.latitude), rounded(here.longitude));
+    if (-elevation.back() > 0.0) at_sea.insert(sediment_at_depth(-elevation.back()).number);
     if (!std::isnan(value)) deepest = std::max(deepest, -elevation.back());
   }
   if (holes > 0)
@@ -304,9 +306,10 @@ OceanArea write_ocean_area(const OceanSources& sources, const OceanRequest& requ
   write_water(file, Water(sources, request.when, request.latitude, request.longitude), request, box,
               deepest, area);
   write_sediment(file, sources, request, box, floor, bathymetry, axes, area);
-  if (sources.sediment.empty() && area.classes.size() > 1) {
+  if (sources.sediment.empty() && at_sea.size() > 1) {
     std::string kinds;
-    for (const Sediment& one : area.classes) kinds += (kinds.empty() ? "" : ", ") + one.name;
+    for (const Sediment& one : area.classes)
+      if (at_sea.count(one.number) != 0) kinds += (kinds.empty() ? "" : ", ") + one.name;
     std::erase_if(centre.notes,
                   [&](const std::string& note) { return note.starts_with(centre.sediment_by); });
     area.notes.push_back("the data say nothing of the sediment: by the depth of each cell, " +

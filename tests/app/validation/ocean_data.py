@@ -255,6 +255,13 @@ class WorldOceanAtlas(Folder):
         _, text = self.ocean("--bathymetry gebco.nc --temperature t00.nc --salinity s00.nc --month 3 --data none")
         self.assertIn("of the whole year, not of month 3", text)
 
+    def test_a_date_beyond_the_months_is_told(self):
+        # 20 July is 3.5 days past the middle of the month, 2 August 16.5.
+        words = "--bathymetry gebco.nc --temperature t07.nc --salinity s07.nc --data none --date "
+        self.assertIn("one time of month 7", self.ocean(words + "2024-07-20")[1])
+        self.assertRegex(self.ocean(words + "2024-08-02")[1],
+                         r"the nearest time, of month 7, 1[67][.0-9]* days from 2024-08-02")
+
     def test_salinity_of_its_own(self):
         self.refused("--bathymetry gebco.nc --temperature t00.nc --data none", "t00.nc: found no variable of salinity")
         found, _ = self.ocean("--bathymetry gebco.nc --temperature t00.nc:t_an --salinity s00.nc:s_an --data none")
@@ -704,12 +711,14 @@ sample_rate = 4000.0
             j, i = int(np.argmin(abs(lat - 30.95))), int(np.argmin(abs(lon + 60.05)))
             f["elevation"].missing_value = np.int16(-32000)
             f["elevation"][j, i:i + 3] = -32000
+            f["elevation"].delncattr("units")
         gebco(self.folder / "whole.nc", 30.7, 31.3, -60.6, -59.4)
         hycom(self.folder / "hycom.nc", [210_396])
         place = f"ocean --latitude {SUMMIT[0]} --longitude {SUMMIT[1]} --area 40km --temperature hycom.nc --data none -o place.toml"
         text = self.asdic(place + " --bathymetry gebco.nc")
         self.assertRegex(text, r"note: 3 of \d+ cells of the bathymetry are holes in gebco.nc: elevation, "
                          rf"the first at {round(float(lat[j]), 4)} N {round(float(lon[i]), 4)} E; a second --bathymetry")
+        self.assertIn("note: gebco.nc: elevation has no units: taken as m", text)
         for told in (text, (self.folder / "place.toml").read_text()):
             self.assertIn("by the depth of each cell, sandy mud, abyssal clay were taken; --sediment takes a map", told)
             self.assertNotIn("was taken; --sediment", told)
@@ -721,13 +730,16 @@ sample_rate = 4000.0
     def test_depths_of_targets_below_the_floor_everywhere(self):
         (self.folder / "flat.toml").write_text("""[environment.sound_speed]
 kind = "isovelocity"
+speed = 1500.0
 [environment.bottom]
-kind = "fluid"
+kind = "grain-size"
+grain_size = 2.5
 depth = 200.0
 [platform]
 position = [0.0, 0.0, 50.0]
 [transmitter]
 source_level_db = 215.0
+taper = "omnidirectional"
 [pulse]
 kind = "cw"
 frequency = 1000.0
@@ -738,6 +750,7 @@ phones = 1
 spacing = 0.7
 [pings]
 recording_duration = 2.0
+sample_rate = 4000.0
 """)
         text = self.asdic("area flat.toml --depth 3000,100 --bearings 4 --ranges 5 -o flat.h5")
         self.assertIn("--depth: 3000 m is in the water nowhere within the reach, whose deepest place has 200 m", text)
