@@ -11,7 +11,7 @@
 namespace asdic::detail {
 namespace {
 
-constexpr std::size_t most_tables = 256;
+constexpr std::size_t most_tables = 512;
 
 }  // namespace
 
@@ -58,6 +58,9 @@ DelayTable DelayTables::made(const Plane& plane, double platform_depth, double d
 
 std::shared_ptr<const DelayTable> DelayTables::from(const Vec3& platform, double bearing,
                                                     double depth, double longest) {
+  // Over a map every bearing has a plane of its own: those of a sector share that of its middle.
+  constexpr double sectors = 144.0, width = 2.0 * pi / sectors;
+  if (paths_.area()) bearing = (std::floor(bearing / width) + 0.5) * width;
   const Plane plane = paths_.plane(platform, bearing, longest);
   // In a layered ocean all planes are one. Places that move by less than a metre share a table.
   const bool layered = paths_.layered();

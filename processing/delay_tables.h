@@ -29,6 +29,7 @@ class DelayTables {
   /// The farthest that sound of 1600 m/s comes in a delay, from one of two ends so far apart [m];
   /// rounded up so that tables serve many detections.
   [[nodiscard]] static double longest(double delay, double apart) noexcept;
+  /// Over a map: of the plane of the middle of a bearing's 2.5°.
   /// \param platform  where the paths begin   \param depth  where they end [m]
   /// \param longest  of the ranges [m]
   [[nodiscard]] std::shared_ptr<const DelayTable> from(const Vec3& platform, double bearing,
