@@ -127,6 +127,9 @@ Bounces search_bounces(const PropagationSettings& settings, const BounceSearch& 
     Bounces followed = numbers ? asked : as_asked(settings, bounces);
     followed.left_out_db =
         numbers ? received.by_numbers().left_out_db(0) : by_most.estimate_db(bounces, converged);
+    // Nobody looked beyond the last try, whatever number is asked for.
+    if (too_many)
+      followed.left_out_db = std::max(followed.left_out_db, by_most.left_out_db(most / 2));
     return followed;
   }
 }

@@ -416,5 +416,26 @@ TEST(EnoughBounces, FociAreWarnedOf) {
   EXPECT_FALSE(warned(s, 5000.0, "at a focus", {45000.0, 0.0, 1000.0}));
 }
 
+// Paths that multiply by four with every bounce and hold the same energy together, as over rough
+// ground: the try with too many is the last, those of the one before are followed, and that more is
+// missing is told, of numbers that nobody looked at, too.
+TEST(EnoughBounces, EndWherePathsMultiplyAndSaySo) {
+  int looked_to = 0;
+  const auto look = [&](const PathLimits& limits, ReceivedBounces& received) {
+    looked_to = limits.max_bottom_bounces;
+    for (int n = 0; n <= looked_to; ++n)
+      for (int i = 0; i < 1 << (2 * n); ++i) received.add(1.0, n, n, std::pow(0.25, n));
+  };
+  const BounceSearch search{.first = 4, .growth = 1.5, .most = 96, .most_paths = 1000};
+  const Bounces found = search_bounces({}, search, look);
+  EXPECT_EQ(looked_to, 6);  // 341 paths by four bounces, 5461 by six
+  EXPECT_EQ(found.bottom, 4);
+  EXPECT_GT(found.left_out_db, tolerable_db);
+  const Bounces asked =
+      search_bounces({.max_surface_bounces = 9, .max_bottom_bounces = 9}, search, look);
+  EXPECT_EQ(asked.bottom, 9);
+  EXPECT_GT(asked.left_out_db, tolerable_db);
+}
+
 }  // namespace
 }  // namespace asdic::detail
