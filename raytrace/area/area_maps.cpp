@@ -141,6 +141,81 @@ MapValue ScalarMap::faceted(const MapFrame::OnGrid& place) const {
   return on_map(f, place);
 }
 
+double ScalarMap::least_within(const Vec2& low, const Vec2& high) const {
+  const MapAxis &across = grid_->x(), &up = grid_->y();
+  double u0 = infinity, u1 = -infinity, v0 = infinity, v1 = -infinity;
+  for (const double s : {0.0, 0.5, 1.0})
+    for (const double t : {0.0, 0.5, 1.0}) {
+      const MapFrame::OnGrid place =
+          frame_.on_grid(std::lerp(low.x(), high.x(), s), std::lerp(low.y(), high.y(), t));
+      const double u = on_axis(frame_, across, place.u);
+      u0 = std::min(u0, u);
+      u1 = std::max(u1, u);
+      v0 = std::min(v0, place.v);
+      v1 = std::max(v1, place.v);
+    }
+  if (frame_.is_geographic() && u1 - u0 > 90.0) return -infinity;
+  // On a sphere the sides of a box bend between the places that were looked at: a cell more.
+  const std::size_t more = frame_.is_geographic() ? 1 : 0;
+  const auto first = [&](const MapAxis& axis, double at) {
+    const std::size_t i = axis.interval(at);
+    return i - std::min(i, more);
+  };
+  const auto last = [&](const MapAxis& axis, double at) {
+    return std::min(axis.interval(at) + 1 + more, axis.size() - 1);
+  };
+  MapGrid::Window nodes{.column = first(across, u0), .row = first(up, v0)};
+  nodes.columns = last(across, u1) - nodes.column + 1;
+  nodes.rows = last(up, v1) - nodes.row + 1;
+  constexpr std::size_t too_many = 1 << 16;
+  if (nodes.columns * nodes.rows > too_many) return -infinity;
+  double least = infinity;
+  if (interpolation_ == MapInterpolation::faceted) {
+    for (std::size_t j = nodes.row; j < nodes.row + nodes.rows; ++j)
+      for (std::size_t i = nodes.column; i < nodes.column + nodes.columns; ++i) {
+        const double value = sign_ * double(*grid_->at(i, j)) + more_;
+        if (std::isnan(value)) return -infinity;
+        least = std::min(least, value);
+      }
+    return least;
+  }
+  return least_of_cubics(nodes) + more_;
+}
+
+/// The least control point of the cells' bicubics between some nodes, which hold all their values:
+/// f + δu·f_u + δv·f_v + δu·δv·f_uv at every node, δ a third of the way to either neighbour, and 0.
+double ScalarMap::least_of_cubics(const MapGrid::Window& nodes) const {
+  const MapAxis &across = grid_->x(), &up = grid_->y();
+  const auto thirds = [](const MapAxis& axis, std::size_t k) {
+    const auto places = axis.places();
+    return std::array{k > 0 ? (places[k - 1] - places[k]) / 3.0 : 0.0, 0.0,
+                      k + 1 < places.size() ? (places[k + 1] - places[k]) / 3.0 : 0.0};
+  };
+  double least = infinity;
+  for (std::size_t j = nodes.row; j < nodes.row + nodes.rows; ++j) {
+    const MapAxis::Cubic b = up.cubic(up.places()[j]);
+    const auto rise = thirds(up, j);
+    for (std::size_t i = nodes.column; i < nodes.column + nodes.columns; ++i) {
+      const MapAxis::Cubic a = across.cubic(across.places()[i]);
+      double u = 0.0, v = 0.0, uv = 0.0;
+      for (std::size_t m = 0; m < 4; ++m) {
+        u += a.slope[m] * double(*grid_->at(a.index[m], j));
+        v += b.slope[m] * double(*grid_->at(i, b.index[m]));
+        for (std::size_t n = 0; n < 4; ++n)
+          uv += a.slope[m] * b.slope[n] * double(*grid_->at(a.index[m], b.index[n]));
+      }
+      const double f = double(*grid_->at(i, j));
+      for (const double du : thirds(across, i))
+        for (const double dv : rise) {
+          const double value = sign_ * (f + du * u + dv * v + du * dv * uv);
+          if (std::isnan(value)) return -infinity;
+          least = std::min(least, value);
+        }
+    }
+  }
+  return least;
+}
+
 std::size_t ScalarMap::facet(double x, double y) const noexcept {
   const MapFrame::OnGrid place = frame_.on_grid(x, y);
   const MapAxis &across = grid_->x(), &up = grid_->y();

@@ -46,6 +46,9 @@ class ScalarMap {
 
   /// \throws InputError where the map has a hole, by its place
   [[nodiscard]] MapValue at(double x, double y) const;
+  /// A bound: nowhere in a box of the map is the value less. −∞ where there is a hole, or where
+  /// the box is too wide to be looked at.
+  [[nodiscard]] double least_within(const Vec2& low, const Vec2& high) const;
   /// Which triangle of a faceted map a place is on.
   [[nodiscard]] std::size_t facet(double x, double y) const noexcept;
   /// Whether a place is on the map: elsewhere its edge goes on.
@@ -61,6 +64,7 @@ class ScalarMap {
  private:
   [[nodiscard]] MapValue bicubic(const MapFrame::OnGrid& place) const;
   [[nodiscard]] MapValue faceted(const MapFrame::OnGrid& place) const;
+  [[nodiscard]] double least_of_cubics(const MapGrid::Window& nodes) const;
   void check(double value, double u, double v) const;
 
   std::shared_ptr<const MapGrid> grid_;

@@ -12,7 +12,9 @@ constexpr double more = 1.5;  // than what was measured on lines
 }  // namespace
 
 AreaVolume::AreaVolume(std::shared_ptr<const Area> area)
-    : area_(std::move(area)), column_(area_->everywhere(), Transect{}) {
+    : area_(std::move(area)),
+      column_(area_->everywhere(), Transect{}),
+      blocks_(area_->floor(), area_->surface_depth() + Area::film) {
   const auto look = [](double step, double most_lines, const auto& at) {
     const int lines = static_cast<int>(std::min(most_lines, measured / step));
     for (int i = -lines; i <= lines; ++i)
@@ -22,6 +24,7 @@ AreaVolume::AreaVolume(std::shared_ptr<const Area> area)
     if (!area_->floor().covers(x, y)) return;
     const VolumeFloor here = floor(x, y);
     steepest_ = std::max(steepest_, here.gradient.norm());
+    deepest_ = std::max(deepest_, here.depth);
   });
   steepest_ *= more;
   if (!area_->water()) return;

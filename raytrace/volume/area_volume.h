@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "raytrace/area/area.h"
+#include "raytrace/volume/floor_blocks.h"
 #include "raytrace/volume/transect_volume.h"
 
 namespace asdic::detail {
@@ -37,6 +38,10 @@ class AreaVolume : public VolumeOcean {
   [[nodiscard]] double shallowest_floor() const override { return -infinity; }
   [[nodiscard]] double deepest_floor() const override { return infinity; }
   [[nodiscard]] double steepest_floor() const override { return steepest_; }
+  [[nodiscard]] double shallowest_within(const Vec2& low, const Vec2& high) const override {
+    return blocks_.shallowest(low, high);
+  }
+  [[nodiscard]] double deepest_known() const override { return deepest_; }
   [[nodiscard]] double water_density(double depth) const override {
     return area_->everywhere().water_density.at(depth);
   }
@@ -47,7 +52,8 @@ class AreaVolume : public VolumeOcean {
  private:
   std::shared_ptr<const Area> area_;
   TransectVolume column_;  // of water that is everywhere the same
-  double bending_ = 0.0, steepest_ = 0.0;
+  FloorBlocks blocks_;
+  double bending_ = 0.0, steepest_ = 0.0, deepest_ = 0.0;
 };
 
 }  // namespace asdic::detail

@@ -3,31 +3,26 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <span>
 #include <unordered_map>
 #include <vector>
 
 #include "core/geometry.h"
 #include "raytrace/ocean/tube_amplitude.h"
-#include "raytrace/parallel/parallel.h"
+#include "raytrace/parallel/progress.h"
 #include "raytrace/parallel/stop.h"
 
 namespace asdic::detail {
 namespace volume {  // with names that others use, too
 namespace {
 
-constexpr double near_enough = 1e-5;       // miss at the receiver [m]
-constexpr double acceptable = 1e-3;        // the same where rounding and steps leave more: 1e-12 s
-constexpr double on_the_leg = 1e-4;        // beyond the ends of a leg [m]
-constexpr double coarse = 1e-3;            // of a step of the mesh's rays [m]
-constexpr double fine = 1e-7;              // of a step of an eigenray [m]
-constexpr double uniform_mesh = 6.0;       // of launch angles, where rays are straight [deg]
-constexpr double bent_mesh = 1.5;          // and elsewhere, twice that of steep rays
-constexpr double flat_rays = 30.0;         // those that may turn in the water [deg]
-constexpr int cuts = 7;                    // a cell is cut in halves so often, each way
-constexpr int cuts_of_borders = 3;         // the same where families part, in uniform water
-constexpr int cuts_of_bent_borders = 0;    // and elsewhere
-constexpr std::size_t most_rays = 100000;  // of a mesh
+constexpr double acceptable = 1e-3;      // the same where rounding and steps leave more: 1e-12 s
+constexpr double on_the_leg = 1e-4;      // beyond the ends of a leg [m]
+constexpr double coarse = 1e-3;          // of a step of Newton's first rays [m]
+constexpr std::size_t patience = 12;     // of them, until the receiver is near
+constexpr int cuts_of_near_borders = 3;  // where families part near a root, in bent water
+constexpr double faint_cell = 0.3;       // of the faintest path: what a focus within it may add
 
 double wrapped(double angle) noexcept { return std::remainder(angle, 2.0 * pi); }
 
@@ -37,7 +32,8 @@ struct Pass {
   Vec3 miss;     // place − receiver
   Vec3 tangent;  // unit
   Mat32 x_launch;
-  double least = 0.0;  // about the least turn of the launch that could mend the miss [rad]
+  double strength = 0.0;  // its amplitude, but for absorption
+  double least = 0.0;     // about the least turn of the launch that could mend the miss [rad]
 };
 
 /// Components of the launch's turn that mend a miss: X·a + s·t = −miss. Null at a caustic.
@@ -77,8 +73,15 @@ struct Root {
 /// Newton's method in two launch angles for a leg of one history.
 class Refinement {
  public:
-  Refinement(const VolumeTracer& tracer, const Vec3& from, const Vec3& to, double longest)
-      : tracer_(tracer), from_(from), to_(to), longest_(longest) {}
+  Refinement(const VolumeTracer& tracer, const Vec3& from, const Vec3& to, double longest,
+             const VolumePrecision& precision)
+      : tracer_(tracer),
+        from_(from),
+        to_(to),
+        longest_(longest),
+        near_enough_(precision.miss),
+        acceptable_(std::max(acceptable, precision.miss)),
+        fine_(precision.step) {}
 
   /// \param furthest  turn from the start [rad]
   std::optional<Root> operator()(const Vec3& start, std::size_t leg, std::uint64_t key,
@@ -87,13 +90,15 @@ class Refinement {
     if (!trace(direction, leg, key, coarse, false, traced)) return {};
     double miss = across(ray_.legs[leg]);
     double tolerance = coarse;
+    const std::size_t begun = traced;
     for (int i = 0; i < 30; ++i) {
-      if (miss < near_enough && tolerance == fine) break;
-      if (tolerance != fine && miss < 10.0) {
-        tolerance = fine;
+      if (tolerance == coarse && traced - begun > patience) return {};
+      if (miss < near_enough_ && tolerance == fine_) break;
+      if (tolerance != fine_ && miss < 10.0) {
+        tolerance = fine_;
         if (!trace(direction, leg, key, tolerance, false, traced)) return {};
         miss = across(ray_.legs[leg]);
-        if (miss < near_enough) break;
+        if (miss < near_enough_) break;
       }
       const LegPass& pass = ray_.legs[leg];
       auto turn = mending(pass.state.x - to_, pass.state.p.normalized(), pass.state.x_launch);
@@ -105,7 +110,7 @@ class Refinement {
         if ((next - start).norm() > furthest) continue;
         if (!trace(next, leg, key, tolerance, false, traced)) continue;
         const double now = across(ray_.legs[leg]);
-        if (now < miss || now < near_enough) {
+        if (now < miss || now < near_enough_) {
           direction = next;
           miss = now;
           better = true;
@@ -114,8 +119,8 @@ class Refinement {
       }
       if (!better) break;
     }
-    if (!(miss < acceptable)) return {};
-    if (!trace(direction, leg, key, fine, true, traced)) return {};
+    if (!(miss < acceptable_)) return {};
+    if (!trace(direction, leg, key, fine_, true, traced)) return {};
     const LegPass& pass = ray_.legs[leg];
     if (pass.beyond > on_the_leg) return {};
     return Root{direction,
@@ -147,6 +152,7 @@ class Refinement {
   const VolumeTracer& tracer_;
   Vec3 from_, to_;
   double longest_;
+  double near_enough_, acceptable_, fine_;
   VolumeRay ray_;
 };
 
@@ -185,54 +191,38 @@ Arrival arrival_of(const Root& root, const Vec3& from, const Vec3& to) {
   return path;
 }
 
-/// The mesh of launch directions around a source, and the roots found in it.
-class Mesh {
+/// The search in a fan for the roots of one receiver.
+class Search {
  public:
-  Mesh(const VolumeTracer& tracer, const Vec3& from, const Vec3& to, const PathLimits& limits,
-       VolumeSearchReport& report)
-      : tracer_(tracer),
-        from_(from),
+  Search(const VolumeFan& fan, const Vec3& to, const VolumePrecision& precision,
+         VolumeSearchReport& report)
+      : fan_(fan),
+        from_(fan.from()),
         to_(to),
-        limits_(limits),
+        precision_(precision),
+        too_faint_(faint_cell * fan.limits().faintest / (to - fan.from()).norm()),
+        limits_(fan.limits()),
         report_(report),
-        longest_(longest_path(tracer.ocean(), from, to)),
-        bearing_(separation(from, to).bearing),
-        refine_(tracer, from, to, longest_) {
-    const VolumeOcean& ocean = tracer.ocean();
-    const WaterCell cell = ocean.water_cell(from, Vec3::UnitZ());
-    const double c = ocean.speed(from, cell.index).c;
-    slope_ = ocean.steepest_floor();
-    if (ocean.sideways_bending() > 0.0) by_water_ = ocean.sideways_bending() * longest_ * c;
-    const bool uniform = cell.uniform && cell.walls == 0;
-    const double mesh = radians(uniform ? uniform_mesh : bent_mesh);
-    bent_ = !uniform;
-    border_cuts_ = uniform ? cuts_of_borders : cuts_of_bent_borders;
-    slowing_ = uniform ? 1.0 : 0.94;
-    // Never quite at a pole, where directions have no azimuth.
-    const double most = std::min(limits.max_launch_angle, 0.5 * pi - 1e-6);
-    const double level = std::min(most, uniform ? most : radians(flat_rays));
-    const int half = std::max(1, int(std::ceil(level / mesh)));
-    const int steep = most > level ? std::max(1, int(std::ceil((most - level) / (2.0 * mesh)))) : 0;
-    for (int i = -half - steep; i <= half + steep; ++i) {
-      const int n = std::abs(i);
-      const double e = n <= half ? level * n / half : level + (most - level) * (n - half) / steep;
-      rows_.push_back(std::copysign(e, double(i)));
-    }
-    coarse_ = std::clamp(1e-6 * (to - from).norm(), coarse, 0.1);
-    d_azimuth_ = std::clamp(0.5 * std::asin(std::min(1.0, turn(0.0))), 2e-3, radians(uniform_mesh));
-    // a whole number to the half turn, so that no cell is beyond it
-    columns_ = int(std::ceil(pi / d_azimuth_));
-    d_azimuth_ = pi / columns_;
-  }
+        refine_(fan.tracer(), fan.from(), to, longest_path(fan.tracer().ocean(), fan.from(), to),
+                precision) {}
 
-  Arrivals search() {
-    if (bent_ && turn(0.0) > 0.2) measure_turns();
-    trace_corners();
-    for (int row = 0; row + 1 < int(rows_.size()); ++row) {
-      const int columns = columns_of(row);
-      for (int column = -columns; column < columns; ++column)
-        look({row << cuts, column << cuts, 0, 0});
+  Arrivals operator()(const std::function<bool(double)>& told) {
+    for (int row = 0; row < fan_.rows(); ++row) {
+      const int columns = fan_.columns_of(row);
+      for (int column = -columns; column < columns; ++column) {
+        std::vector<char> near;
+        if (!fan_.legs_near(row, column, to_, near)) continue;
+        cells_.push_back({row << cuts, column << cuts, 0, 0, near_legs_.size()});
+        near_legs_.push_back(std::move(near));
+      }
     }
+    // Whole cells first, and then their parts, so that what is given up is the finest.
+    const std::size_t whole = cells_.size();
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+      if (told && i % 64 == 0 && !told(0.5 * looked(i, whole))) throw Interrupted();
+      look(Cell(cells_[i]));
+    }
+    try_later(told);
     Arrivals found;
     for (const Root& root : roots_) {
       Arrival path = arrival_of(root, from_, to_);
@@ -248,134 +238,72 @@ class Mesh {
   }
 
  private:
-  /// By how much bounces off slopes and bent water change the horizontal slowness of a ray at
-  /// most, in units of the slowness. A bounce of grazing angle θ off a slope m does by 2m·sin θ,
-  /// and makes the next one steeper by 2·atan m; slower water does, too.
-  [[nodiscard]] double turn(double steepest) const noexcept {
-    double sum = by_water_;
-    const double each = std::atan(slope_);
-    double grazing = std::acos(slowing_ * std::cos(steepest)) + each;
-    for (int i = 0; i < limits_.max_bottom_bounces && sum < 1.0; ++i, grazing += 2.0 * each)
-      sum += 2.0 * slope_ * std::sin(std::min(grazing, 0.5 * pi));
-    return 1.05 * sum;
-  }
+  static constexpr int cuts = VolumeFan::cuts;
 
   /// Lower left corner on the finest lattice, and how often the cell was cut each way.
   struct Cell {
     int row, column, row_cuts, column_cuts;
+    std::size_t of;  // the whole cell that it is a part of
   };
+  /// A ray, and how those of its legs pass the receiver that were asked for.
   struct Vertex {
-    std::vector<Pass> passes;
+    std::shared_ptr<const VolumeCourse> course;
+    std::vector<Pass> passes;  // least < 0: not asked for
+    [[nodiscard]] std::size_t legs() const noexcept { return passes.size(); }
+    [[nodiscard]] std::uint64_t key(std::size_t leg) const { return course->legs[leg].key; }
   };
   struct Corner {
-    const Vertex* vertex;
+    Vertex* vertex;
     Vec3 direction;
     double cosine;
   };
 
-  [[nodiscard]] double elevation(int row) const noexcept {
-    const auto base = std::size_t(row >> cuts);
-    if (base + 1 >= rows_.size()) return rows_.back();
-    const double part = double(row & ((1 << cuts) - 1)) / double(1 << cuts);
-    return rows_[base] + part * (rows_[base + 1] - rows_[base]);
-  }
-  /// Cells either side of the receiver's bearing that rays of a row can reach it from.
-  [[nodiscard]] int columns_of(int row) const noexcept {
-    const double steepest =
-        std::max(std::abs(rows_[std::size_t(row)]), std::abs(rows_[std::size_t(row) + 1]));
-    const double cosine = std::cos(steepest), most = turn(steepest);
-    double reach = most >= cosine ? pi : std::asin(most / cosine);
-    if (!turns_.empty())
-      reach =
-          std::min(reach, 2.0 * std::max(turns_[std::size_t(row)], turns_[std::size_t(row) + 1]) +
-                              radians(6.0));
-    return std::clamp(int(std::ceil(reach / d_azimuth_ + 1e-9)), 1, columns_);
-  }
-  [[nodiscard]] double azimuth(int column) const noexcept {
-    return bearing_ + double(column) / double(1 << cuts) * d_azimuth_;
-  }
-
-  /// How far the rays of a coarse ring turn, row by row: where water bends rays the bound above
-  /// costs too many of them.
-  void measure_turns() {
-    constexpr int directions = 24;
-    std::vector<double> turned(rows_.size() * directions);
-    in_parallel_chunks(turned.size(), directions, [&](std::size_t begin, std::size_t end) {
-      VolumeRay ray;
-      for (std::size_t i = begin; i < end; ++i) {
-        const double e = rows_[i / directions],
-                     a = bearing_ + 2.0 * pi * double(i % directions) / directions;
-        tracer_.trace(from_, direction(a, e), to_, mesh_limits(), ray);
-        turned[i] = ray.turned;
-      }
-    });
-    for (std::size_t row = 0; row < rows_.size(); ++row)
-      turns_.push_back(*std::max_element(turned.begin() + std::ptrdiff_t(row * directions),
-                                         turned.begin() + std::ptrdiff_t((row + 1) * directions)));
-    report_.rays += turned.size();
-  }
-
-  [[nodiscard]] VolumeLimits mesh_limits() const noexcept {
-    return {.max_surface_bounces = limits_.max_surface_bounces,
-            .max_bottom_bounces = limits_.max_bottom_bounces,
-            .longest = longest_,
-            .faintest = limits_.faintest,
-            .tolerance = coarse_,
-            .losses = limits_.faintest > 0.0};
-  }
-
-  /// The rays of all cells before any is cut, many at a time.
-  void trace_corners() {
-    std::vector<std::pair<int, int>> corners;
-    for (int row = 0; row < int(rows_.size()); ++row) {
-      int columns = 0;
-      for (const int beside : {row - 1, row})
-        if (beside >= 0 && beside + 1 < int(rows_.size()))
-          columns = std::max(columns, columns_of(beside));
-      for (int column = -columns; column <= columns; ++column)
-        corners.emplace_back(row << cuts, column << cuts);
-    }
-    std::vector<Vertex> traced(corners.size());
-    constexpr std::size_t side_by_side = 64;
-    in_parallel_chunks(corners.size(), side_by_side, [&](std::size_t begin, std::size_t end) {
-      VolumeRay ray;
-      for (std::size_t i = begin; i < end; ++i)
-        traced[i].passes = passes(corners[i].first, corners[i].second, ray);
-    });
-    for (std::size_t i = 0; i < corners.size(); ++i)
-      vertices_.emplace(name_of(corners[i].first, corners[i].second), std::move(traced[i]));
-    report_.rays += corners.size();
-  }
+  [[nodiscard]] double elevation(int row) const noexcept { return fan_.elevation(row); }
+  [[nodiscard]] double azimuth(int column) const noexcept { return fan_.azimuth(column); }
 
   static std::uint64_t name_of(int row, int column) noexcept {
     return (std::uint64_t(std::uint32_t(row)) << 32) | std::uint32_t(column);
   }
 
-  const Vertex& vertex(int row, int column) {
+  Vertex& vertex(int row, int column) {
     const auto [at, fresh] = vertices_.try_emplace(name_of(row, column));
     if (!fresh) return at->second;
-    ++report_.rays;
-    if (report_.rays % 256 == 0) stop_point();
-    at->second.passes = passes(row, column, ray_);
+    if (((row | column) & ((1 << cuts) - 1)) != 0) ++report_.rays;
+    if (vertices_.size() % 256 == 0) stop_point();
+    at->second.course = fan_.course(row, column);
+    at->second.passes.resize(at->second.course->legs.size());
+    for (Pass& pass : at->second.passes) pass.least = -1.0;
     return at->second;
   }
 
-  [[nodiscard]] std::vector<Pass> passes(int row, int column, VolumeRay& ray) const {
-    tracer_.trace(from_, direction(azimuth(column), elevation(row)), to_, mesh_limits(), ray);
-    std::vector<Pass> found;
-    found.reserve(ray.legs.size());
-    for (const LegPass& leg : ray.legs) {
-      Pass pass{.key = leg.history.key,
-                .facets = leg.history.facets,
-                .miss = leg.state.x - to_,
-                .tangent = leg.state.p.normalized(),
-                .x_launch = leg.state.x_launch};
-      const double size = pass.x_launch.norm();
-      const double off = (pass.miss - pass.tangent * pass.tangent.dot(pass.miss)).norm();
-      pass.least = size > 0.0 ? off / size : infinity;
-      found.push_back(pass);
-    }
-    return found;
+  const Pass* pass_of(Vertex& vertex, std::size_t leg) const {
+    Pass& pass = vertex.passes[leg];
+    if (pass.least >= 0.0) return &pass;
+    const CoursePass at = course_pass(*vertex.course, leg, to_);
+    pass = {.key = vertex.key(leg),
+            .facets = vertex.course->legs[leg].facets,
+            .miss = at.x - to_,
+            .tangent = at.tangent,
+            .x_launch = at.x_launch};
+    pass.strength =
+        vertex.course->legs[leg].left / std::sqrt(std::abs(tube_area(pass.x_launch, pass.tangent)));
+    const double size = pass.x_launch.norm();
+    const double off = (pass.miss - pass.tangent * pass.tangent.dot(pass.miss)).norm();
+    pass.least = size > 0.0 ? off / size : infinity;
+    return &pass;
+  }
+
+  /// Whether a leg of a cell can come near the receiver, by the whole cell that it is cut from.
+  [[nodiscard]] bool may_be_near(const Cell& cell, std::size_t leg) const noexcept {
+    const std::vector<char>& near = near_legs_[cell.of];
+    return leg >= near.size() || near[leg] != 0;
+  }
+
+  /// Of the work, when so many cells are looked at: how many more there will be is a guess.
+  [[nodiscard]] double looked(std::size_t cells, std::size_t whole) const noexcept {
+    const double budget = double(report_.rays) / double(precision_.most_rays);
+    const double begun = double(cells) / double(std::max(cells_.size(), 2 * whole) + 1);
+    return std::min(0.99, std::max(begun, budget));
   }
 
   void look(const Cell& cell) {
@@ -388,61 +316,80 @@ class Mesh {
       const double e = elevation(row);
       corners[std::size_t(i)] = {&vertex(row, column), direction(azimuth(column), e),
                                  std::max(std::cos(e), 1e-9)};
-      const std::size_t legs = corners[std::size_t(i)].vertex->passes.size();
+      const std::size_t legs = corners[std::size_t(i)].vertex->legs();
       most = std::max(most, legs);
       least = std::min(least, legs);
     }
     const double up = elevation(cell.row + height) - elevation(cell.row);
     const double around = azimuth(cell.column + width) - azimuth(cell.column);
     const double diagonal = std::hypot(up, around * corners[0].cosine);
-    bool cut = false, taller = false, near = false;
+    bool cut = false, taller = false, near = false, near_border = false;
     for (std::size_t leg = 0; leg < most; ++leg) {
+      if (!may_be_near(cell, leg)) continue;
+      bool close = false, parted = false;
       std::array<bool, 4> done{};
       for (std::size_t i = 0; i < 4; ++i) {
-        if (done[i] || corners[i].vertex->passes.size() <= leg) continue;
-        const std::uint64_t key = corners[i].vertex->passes[leg].key;
+        if (done[i] || corners[i].vertex->legs() <= leg) continue;
+        const std::uint64_t key = corners[i].vertex->key(leg);
         std::array<const Pass*, 4> family{};
         std::size_t members = 0;
         for (std::size_t j = i; j < 4; ++j)
-          if (corners[j].vertex->passes.size() > leg && corners[j].vertex->passes[leg].key == key) {
-            family[j] = &corners[j].vertex->passes[leg];
+          if (corners[j].vertex->legs() > leg && corners[j].vertex->key(leg) == key) {
+            family[j] = pass_of(*corners[j].vertex, leg);
             done[j] = true;
-            near = near || family[j]->least < diagonal;
+            close = close || (family[j]->least < diagonal && family[j]->strength >= too_faint_);
             ++members;
           }
         // Where one goes on and the other has ended nothing is hidden that has more bounces; where
         // they part, thin families may be.
         for (std::size_t j = i + 1; j < 4; ++j)
-          border = border || (family[j] == nullptr && corners[j].vertex->passes.size() > leg);
+          parted = parted || (family[j] == nullptr && corners[j].vertex->legs() > leg);
+        if (std::none_of(family.begin(), family.end(), [&](const Pass* pass) {
+              return pass != nullptr && pass->strength >= too_faint_;
+            }))
+          continue;
         const Verdict verdict = members == 4 ? whole(corners, family, leg, key, up, around)
                                              : partial(corners, family, leg, key, up, around);
         if (verdict == Verdict::nothing) continue;
         if (verdict == Verdict::cut_elevation) taller = true;
         cut = true;
       }
+      border = border || parted;
+      near = near || close;
+      near_border = near_border || (parted && close);
     }
-    if (border && cell.row_cuts < (near ? cuts : border_cuts_) && cell.column_cuts < cuts) {
-      for (const int i : {0, 1})
-        for (const int j : {0, 1})
-          divide({cell.row + i * height / 2, cell.column + j * width / 2, cell.row_cuts + 1,
-                  cell.column_cuts + 1});
+    // In uniform water thin families may hide anywhere between others.
+    const bool uniform = fan_.cuts_of_borders() > 0;
+    const int border_cuts =
+        uniform ? (near ? cuts : fan_.cuts_of_borders()) : (near_border ? cuts_of_near_borders : 0);
+    const bool parts = border && cell.row_cuts < border_cuts && cell.column_cuts < cuts;
+    if (!parts && !cut) return;
+    if (report_.rays > precision_.most_rays) {
+      ++report_.given_up;
       return;
     }
-    if (!cut) return;
+    if (parts) {
+      for (const int i : {0, 1})
+        for (const int j : {0, 1})
+          cells_.push_back({cell.row + i * height / 2, cell.column + j * width / 2,
+                            cell.row_cuts + 1, cell.column_cuts + 1, cell.of});
+      return;
+    }
     const bool rows = (taller && cell.row_cuts < cuts) || cell.column_cuts >= cuts;
-    if ((rows ? cell.row_cuts : cell.column_cuts) >= cuts || report_.rays > most_rays) {
-      last_resort(corners, most, up, around);
+    if ((rows ? cell.row_cuts : cell.column_cuts) >= cuts) {
+      last_resort(cell, corners, most, up, around);
       return;
     }
     if (rows) {
-      divide({cell.row, cell.column, cell.row_cuts + 1, cell.column_cuts});
-      divide({cell.row + height / 2, cell.column, cell.row_cuts + 1, cell.column_cuts});
+      cells_.push_back({cell.row, cell.column, cell.row_cuts + 1, cell.column_cuts, cell.of});
+      cells_.push_back(
+          {cell.row + height / 2, cell.column, cell.row_cuts + 1, cell.column_cuts, cell.of});
     } else {
-      divide({cell.row, cell.column, cell.row_cuts, cell.column_cuts + 1});
-      divide({cell.row, cell.column + width / 2, cell.row_cuts, cell.column_cuts + 1});
+      cells_.push_back({cell.row, cell.column, cell.row_cuts, cell.column_cuts + 1, cell.of});
+      cells_.push_back(
+          {cell.row, cell.column + width / 2, cell.row_cuts, cell.column_cuts + 1, cell.of});
     }
   }
-  void divide(const Cell& cell) { look(cell); }
 
   enum class Verdict { nothing, cut_elevation, cut_azimuth };
 
@@ -542,7 +489,7 @@ class Mesh {
   Verdict partial(const std::array<Corner, 4>& corners, const std::array<const Pass*, 4>& family,
                   std::size_t leg, std::uint64_t key, double up, double around) {
     double best = infinity;
-    Vec3 start = Vec3::Zero();
+    Guess guess{.leg = leg, .key = key};
     double diagonal = 0.0;
     for (std::size_t i = 0; i < 4; ++i) {
       if (family[i] == nullptr) continue;
@@ -551,25 +498,65 @@ class Mesh {
       const auto turn = mending(family[i]->miss, family[i]->tangent, family[i]->x_launch);
       if (!turn || !(turn->norm() < std::min(best, 1.5 * diagonal))) continue;
       best = turn->norm();
-      start = turned(corners[i].direction, *turn);
-      if (best > 0.0) from_corner_ = corners[i].direction;
+      guess.start = turned(corners[i].direction, *turn);
+      guess.corner = corners[i].direction;
+      guess.strength = family[i]->strength;
     }
     if (std::isinf(best)) return Verdict::nothing;
-    if (!try_root(start, leg, key, 2.0 * diagonal))
-      try_root(from_corner_, leg, key, 3.0 * diagonal);
+    guess.cell = diagonal;
+    guesses_.push_back(guess);
     return Verdict::nothing;
   }
 
+  /// Where a root of a family that ends nearby may be.
+  struct Guess {
+    std::size_t leg;
+    std::uint64_t key;
+    Vec3 start = Vec3::Zero(), corner = Vec3::Zero();
+    double strength = 0.0, cell = 0.0;
+  };
+
+  /// The guesses, the strongest first: most come to nothing.
+  void try_later(const std::function<bool(double)>& told) {
+    std::stable_sort(guesses_.begin(), guesses_.end(),
+                     [](const Guess& a, const Guess& b) { return a.strength > b.strength; });
+    std::unordered_map<std::uint64_t, std::vector<std::pair<Vec3, double>>> failed;
+    const bool uniform = fan_.cuts_of_borders() > 0;
+    const std::size_t begun = report_.refined;
+    for (std::size_t i = 0; i < guesses_.size(); ++i) {
+      const Guess& guess = guesses_[i];
+      const std::size_t spent = report_.refined - begun;
+      if (told && i % 16 == 0 &&
+          !told(0.5 + 0.5 * std::max(double(i) / double(guesses_.size()),
+                                     std::min(1.0, double(spent) / double(precision_.most_rays)))))
+        throw Interrupted();
+      if (i % 16 == 0) stop_point();
+      if (spent > precision_.most_rays) {
+        report_.given_up += guesses_.size() - i;
+        return;
+      }
+      auto& before = failed[guess.key];
+      constexpr double again = 0.2;  // of a cell beside one that failed
+      if (std::any_of(before.begin(), before.end(), [&](const auto& one) {
+            return (one.first - guess.start).norm() < again * std::min(one.second, guess.cell);
+          }))
+        continue;
+      if (try_root(guess.start, guess.leg, guess.key, 2.0 * guess.cell)) continue;
+      if (uniform && try_root(guess.corner, guess.leg, guess.key, 3.0 * guess.cell)) continue;
+      before.emplace_back(guess.start, guess.cell);
+    }
+  }
+
   /// Where cutting has to end.
-  void last_resort(const std::array<Corner, 4>& corners, std::size_t most, double up,
-                   double around) {
+  void last_resort(const Cell& cell, const std::array<Corner, 4>& corners, std::size_t most,
+                   double up, double around) {
     bool any = false;
     for (std::size_t leg = 0; leg < most; ++leg)
       for (const Corner& corner : corners) {
-        if (corner.vertex->passes.size() <= leg) continue;
-        const Pass& pass = corner.vertex->passes[leg];
+        if (!may_be_near(cell, leg) || corner.vertex->legs() <= leg) continue;
+        const Pass& pass = *pass_of(*corner.vertex, leg);
         const double diagonal = std::hypot(up, around * corner.cosine);
-        if (pass.least > 4.0 * diagonal) continue;
+        if (pass.least > 4.0 * diagonal || pass.strength < too_faint_) continue;
         any = true;
         try_root(corner.direction, leg, pass.key, 8.0 * diagonal);
       }
@@ -604,23 +591,18 @@ class Mesh {
     return true;
   }
 
-  const VolumeTracer& tracer_;
+  const VolumeFan& fan_;
   Vec3 from_, to_;
+  VolumePrecision precision_;
+  double too_faint_;  // a cell's strength
   const PathLimits& limits_;
   VolumeSearchReport& report_;
-  double longest_, bearing_;
   Refinement refine_;
-  double slope_ = 0.0, by_water_ = 0.0, slowing_ = 1.0;  // for turn()
-  int border_cuts_ = 0;
-  bool bent_ = false;
-  std::vector<double> turns_;  // of rays of a row, at most, by a coarse ring [rad]
-  std::vector<double> rows_;   // elevations between which cells lie [rad]
-  int columns_ = 0;
-  double d_azimuth_ = 0.0, coarse_ = coarse;
+  std::vector<Cell> cells_;  // in hand, and to come
   std::unordered_map<std::uint64_t, Vertex> vertices_;
-  VolumeRay ray_;
+  std::vector<std::vector<char>> near_legs_;  // of whole cells
   std::vector<Root> roots_;
-  Vec3 from_corner_ = Vec3::Zero();
+  std::vector<Guess> guesses_;
 };
 
 std::uint64_t key_of(std::span<const Bounce> bounces) {
@@ -632,23 +614,25 @@ std::uint64_t key_of(std::span<const Bounce> bounces) {
 }  // namespace
 }  // namespace volume
 
-double longest_path(const VolumeOcean& ocean, const Vec3& from, const Vec3& to) {
-  const WaterCell cell = ocean.water_cell(from, Vec3::UnitZ());
-  if (cell.uniform && cell.walls == 0) return 1e7;  // a quarter of the Earth
-  const double depth = std::min(ocean.deepest_floor(), 12000.0);
-  return 3.0 * (to - from).norm() + 10.0 * depth;
+Arrivals volume_eigenrays(const VolumeFan& fan, const Vec3& to, VolumeSearchReport* report,
+                          const VolumePrecision& precision,
+                          const std::function<bool(double)>& told) {
+  VolumeSearchReport own;
+  return volume::Search(fan, to, precision, report != nullptr ? *report : own)(told);
 }
 
 Arrivals volume_eigenrays(const VolumeTracer& tracer, const Vec3& from, const Vec3& to,
                           const PathLimits& limits, VolumeSearchReport* report) {
-  VolumeSearchReport own;
-  return volume::Mesh(tracer, from, to, limits, report != nullptr ? *report : own).search();
+  const VolumeFan fan(tracer, from, {&to, 1}, limits);
+  Arrivals found = volume_eigenrays(fan, to, report);
+  if (report != nullptr) report->rays += fan.rays();
+  return found;
 }
 
 std::optional<Arrival> followed_volume_path(const VolumeTracer& tracer, const Arrival& path,
                                             const Vec3& from, const Vec3& to) {
   constexpr double furthest_turn = 0.02;
-  volume::Refinement refine(tracer, from, to, longest_path(tracer.ocean(), from, to));
+  volume::Refinement refine(tracer, from, to, longest_path(tracer.ocean(), from, to), {});
   std::size_t traced = 0;
   const double bearing = separation(from, to).bearing + path.launch_deflection;
   const auto root = refine(direction(bearing, path.launch_elevation), path.bounces.size(),

@@ -1,9 +1,11 @@
 #pragma once
 #include <cstddef>
+#include <functional>
 #include <optional>
 
 #include "raytrace/ocean/arrivals.h"
 #include "raytrace/ocean/path_limits.h"
+#include "raytrace/volume/volume_fan.h"
 #include "raytrace/volume/volume_ray.h"
 
 namespace asdic::detail {
@@ -13,11 +15,15 @@ struct VolumeSearchReport {
   std::size_t rays = 0;        ///< traced for the mesh
   std::size_t refined = 0;     ///< and to refine
   std::size_t unfinished = 0;  ///< cells of the mesh that were left unresolved around the receiver
+  std::size_t given_up = 0;    ///< cells and roots that were left for cost
 };
 
-/// The longest path that a search follows in water where rays bend [m]: three times the way and
-/// ten times the depth more. In uniform water bounces alone end a ray.
-[[nodiscard]] double longest_path(const VolumeOcean& ocean, const Vec3& from, const Vec3& to);
+/// How near to its receiver a path is brought, and what a search may cost.
+struct VolumePrecision {
+  double miss = 1e-5;              ///< of the receiver [m]
+  double step = 1e-7;              ///< error of a step [m]
+  std::size_t most_rays = 100000;  ///< within cells, and by Newton's method where families end
+};
 
 /// All eigenrays from one place to another through a volume, sorted by delay.
 ///
@@ -32,6 +38,13 @@ struct VolumeSearchReport {
 [[nodiscard]] Arrivals volume_eigenrays(const VolumeTracer& tracer, const Vec3& from,
                                         const Vec3& to, const PathLimits& limits,
                                         VolumeSearchReport* report = nullptr);
+
+/// The same in a fan that many receivers share: the fan's rays are not counted.
+/// \param told  the share that is looked at; false: no more (Interrupted is thrown)
+[[nodiscard]] Arrivals volume_eigenrays(const VolumeFan& fan, const Vec3& to,
+                                        VolumeSearchReport* report,
+                                        const VolumePrecision& precision = {},
+                                        const std::function<bool(double)>& told = {});
 
 /// The same path after its ends have moved by metres. Null if no ray of the same history is found
 /// there: then it has to be searched for.

@@ -25,6 +25,10 @@ const Roughness& VolumeOcean::floor_roughness() const {
   return smooth;
 }
 
+double VolumeOcean::shallowest_within(const Vec2& /*low*/, const Vec2& /*high*/) const {
+  return shallowest_floor();
+}
+
 double VolumeOcean::water_density(double /*depth*/) const { return 1027.0; }
 
 DepthFunction VolumeOcean::attenuation(double /*frequency*/) const { return 0.0; }

@@ -75,6 +75,10 @@ class VolumeOcean {
   [[nodiscard]] virtual double shallowest_floor() const = 0;  ///< a bound [m]; −∞ where unknown
   [[nodiscard]] virtual double deepest_floor() const = 0;     ///< a bound [m]; +∞ where unknown
   [[nodiscard]] virtual double steepest_floor() const = 0;    ///< a bound of |∇D|
+  /// No floor within a box of the map is shallower [m]: what is above it meets none there.
+  [[nodiscard]] virtual double shallowest_within(const Vec2& low, const Vec2& high) const;
+  /// The deepest floor that is known of, where there is no bound [m].
+  [[nodiscard]] virtual double deepest_known() const { return deepest_floor(); }
 
   [[nodiscard]] virtual double water_density(double depth) const;
   /// All that the water takes out of a wave [Np/m] over depth. \param frequency [Hz]

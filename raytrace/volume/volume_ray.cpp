@@ -133,8 +133,71 @@ Mat32 launch_basis(const Vec3& d) noexcept {
   return basis;
 }
 
+CoursePass course_pass(const VolumeCourse& course, std::size_t leg, const Vec3& receiver) {
+  using Knot = VolumeCourse::Knot;
+  const VolumeCourse::Leg& on = course.legs[leg];
+  const auto closing = [&](const Vec3& x, const Vec3& v) {
+    const Vec3 d = receiver - x;
+    return d.x() * v.x() + d.y() * v.y() + on.steep * d.z() * v.z();
+  };
+  const auto spread = [](const std::array<float, 6>& of) {
+    Mat32 m;
+    for (int k = 0; k < 6; ++k) m(k % 3, k / 3) = double(of[std::size_t(k)]);
+    return m;
+  };
+  CoursePass pass;
+  double nearest = infinity;
+  const Knot* a = course.knots.data() + on.begin;
+  const Knot* const last = course.knots.data() + on.end - 1;
+  for (double before = closing(a->x, a->p); a != last; ++a) {
+    const Knot* b = a + 1;
+    const double begin = before, end = before = closing(b->x, b->p);
+    if (!(begin >= 0.0 && end <= 0.0) || begin == end) continue;
+    const double h = b->time - a->time;
+    const StepChord chord{a->x, h / a->p.squaredNorm() * a->p, b->x, h / b->p.squaredNorm() * b->p};
+    double low = 0.0, high = 1.0, u = begin / (begin - end);
+    for (int i = 0; i < 20; ++i) {  // false position and halves in turn
+      const double rate = closing(chord.at(u), chord.slope(u));
+      (rate > 0.0 ? low : high) = u;
+      const Vec3 v = chord.slope(u);
+      const double square = v.x() * v.x() + v.y() * v.y() + on.steep * v.z() * v.z();
+      double next = square > 0.0 ? u + rate / square : 0.5 * (low + high);
+      if (!(next > low && next < high)) next = 0.5 * (low + high);
+      if (std::abs(next - u) < 1e-6 || high - low < 1e-6) break;
+      u = next;
+    }
+    const Vec3 x = chord.at(u), d = receiver - x;
+    const double distance = d.x() * d.x() + d.y() * d.y() + on.steep * d.z() * d.z();
+    if (distance >= nearest) continue;
+    nearest = distance;
+    pass.x = x;
+    pass.tangent = chord.slope(u).normalized();
+    // across the ray Ẋ = c²P
+    const double w = 1.0 - u;
+    pass.x_launch = w * w * (1.0 + 2.0 * u) * spread(a->x_launch) +
+                    u * w * w * h / a->p.squaredNorm() * spread(a->p_launch) +
+                    u * u * (3.0 - 2.0 * u) * spread(b->x_launch) -
+                    u * u * w * h / b->p.squaredNorm() * spread(b->p_launch);
+  }
+  if (nearest < infinity) return pass;
+  // It never comes closest: drawn out beyond its ends.
+  const Knot& first = course.knots[on.begin];
+  const Knot& end = closing(first.x, first.p) < 0.0 ? first : *last;
+  const double square =
+      end.p.x() * end.p.x() + end.p.y() * end.p.y() + on.steep * end.p.z() * end.p.z();
+  const double w = square > 0.0 ? closing(end.x, end.p) / square : 0.0;
+  pass.x = end.x + w * end.p;
+  pass.tangent = end.p.normalized();
+  pass.x_launch = spread(end.x_launch) + w * spread(end.p_launch);
+  return pass;
+}
+
+double tube_area(const Mat32& x_launch, const Vec3& tangent) noexcept {
+  return triple_product(x_launch.col(0), x_launch.col(1), tangent);
+}
+
 double tube_area(const VolumeState& state) noexcept {
-  return triple_product(state.x_launch.col(0), state.x_launch.col(1), state.p.normalized());
+  return tube_area(state.x_launch, state.p.normalized());
 }
 
 VolumeTracer::VolumeTracer(const VolumeOcean& ocean, double frequency)
@@ -157,6 +220,14 @@ class VolumeTracer::Run {
         limits_(limits),
         out_(out),
         with_track_(with_track) {}
+
+  /// For many receivers: passes are left to course_pass().
+  Run(const VolumeTracer& tracer, std::span<const Vec3> hull, const VolumeLimits& limits,
+      VolumeRay& out, VolumeCourse& course)
+      : Run(tracer, hull.front(), limits, out, false) {
+    hull_ = hull;
+    course_ = &course;
+  }
 
   void follow(const Vec3& from, const Vec3& direction) {
     out_.legs.clear();
@@ -181,6 +252,7 @@ class VolumeTracer::Run {
         break;
       }
     }
+    if (course_ != nullptr && course_->legs.back().end == 0) course_->legs.pop_back();
   }
 
  private:
@@ -199,12 +271,35 @@ class VolumeTracer::Run {
     leg_begin_ = s_;
     passed_ = false;
     nearest_ = infinity;
+    if (course_ == nullptr) return;
+    course_->legs.push_back({.key = history_.key,
+                             .facets = history_.facets,
+                             .begin = course_->knots.size(),
+                             .end = 0,
+                             .left = std::sqrt(std::norm(history_.reflection) + history_.scattered),
+                             .steep = steep_});
+    add_knot();
+  }
+
+  void add_knot() {
+    if (course_ == nullptr) return;
+    VolumeCourse::Knot& knot = course_->knots.emplace_back();
+    knot.x = s_.x;
+    knot.p = s_.p;
+    knot.time = s_.time;
+    for (int k = 0; k < 6; ++k) {
+      knot.x_launch[std::size_t(k)] = float(s_.x_launch(k % 3, k / 3));
+      knot.p_launch[std::size_t(k)] = float(s_.p_launch(k % 3, k / 3));
+    }
   }
 
   /// Rate at which the receiver comes closer: zero where it is closest. Of level rays the distance
   /// on the map counts, which has one minimum however often they turn.
   [[nodiscard]] double closing(const Vec3& x, const Vec3& v) const noexcept {
-    const Vec3 d = receiver_ - x;
+    return closing(receiver_, x, v);
+  }
+  [[nodiscard]] double closing(const Vec3& receiver, const Vec3& x, const Vec3& v) const noexcept {
+    const Vec3 d = receiver - x;
     return d.x() * v.x() + d.y() * v.y() + steep_ * d.z() * v.z();
   }
 
@@ -242,6 +337,10 @@ class VolumeTracer::Run {
   /// The leg is whole: where it never came closest it is drawn out beyond its ends.
   void end_leg() {
     note_bearing();
+    if (course_ != nullptr) {
+      course_->legs.back().end = course_->knots.size();
+      return;
+    }
     if (!passed_) {
       const bool behind = closing(leg_begin_.x, leg_begin_.p) < 0.0;
       const VolumeState& end = behind ? leg_begin_ : s_;
@@ -256,8 +355,16 @@ class VolumeTracer::Run {
 
   /// Whether a ray that goes away from the receiver cannot be turned round any more: a bounce off
   /// a floor of slope m changes the horizontal slowness by 2m/c at most.
+  /// What holds for all corners of a hull holds for all places in it.
   [[nodiscard]] bool cannot_return() const noexcept {
-    const Vec2 away(s_.x.x() - receiver_.x(), s_.x.y() - receiver_.y());
+    if (course_ == nullptr) return (passed_ || steep_ == 0.0) && cannot_return_to(receiver_);
+    return std::all_of(hull_.begin(), hull_.end(), [&](const Vec3& corner) {
+      return (steep_ == 0.0 || closing(corner, s_.x, s_.p) < 0.0) && cannot_return_to(corner);
+    });
+  }
+
+  [[nodiscard]] bool cannot_return_to(const Vec3& receiver) const noexcept {
+    const Vec2 away(s_.x.x() - receiver.x(), s_.x.y() - receiver.y());
     const double distance = away.norm();
     if (distance == 0.0) return false;
     const double outward = (s_.p.x() * away.x() + s_.p.y() * away.y()) / distance;
@@ -265,7 +372,7 @@ class VolumeTracer::Run {
         tracer_.bending_ > 0.0 ? tracer_.bending_ * (limits_.longest - s_.length) : 0.0;
     const int bounces = limits_.max_bottom_bounces - history_.bottom_bounces;
     const double turned = 2.1 * tracer_.steepest_ * double(bounces) * s_.p.norm() + left;
-    return (passed_ || steep_ == 0.0) && outward > turned + 1e-15;
+    return outward > turned + 1e-15;
   }
 
   // ── steps ────────────────────────────────────────────────────────────────────────────────────
@@ -300,7 +407,7 @@ class VolumeTracer::Run {
       end = furthest;
       met = {};
     }
-    note_closest_straight(from, v, c, end);
+    if (course_ == nullptr) note_closest_straight(from, v, c, end);
     if (std::isinf(end)) {
       end_leg();
       return false;
@@ -308,8 +415,16 @@ class VolumeTracer::Run {
     s_ = drawn_out(from, end, c);
     s_.nepers = from.nepers + absorbed(from.x.z(), s_.x.z(), end / c);
     history_.caustics += tube_folds(from.x_launch, from.p_launch, v * c, end);
+    add_knot();
     if (with_track_) out_.track.push_back(s_.x);
     return at_event(met);
+  }
+
+  /// Whether all the floor about a straight way is deeper. \param beside  how far off it places are
+  [[nodiscard]] bool above_floor(const Vec3& a, const Vec3& b, double beside) const {
+    const Vec2 low(std::min(a.x(), b.x()) - beside, std::min(a.y(), b.y()) - beside),
+        high(std::max(a.x(), b.x()) + beside, std::max(a.y(), b.y()) + beside);
+    return std::max(a.z(), b.z()) + beside < ocean_.shallowest_within(low, high);
   }
 
   /// w of the first meeting with the floor up to `most`.
@@ -343,8 +458,16 @@ class VolumeTracer::Run {
     if (std::isinf(last)) last = w + 1e3 * tracer_.spacing_ / std::max(level, 1e-9 * v.norm());
     const double step = level > 0.0 ? std::min(0.5 * tracer_.spacing_ / level, last - w) : last - w;
     if (!(step > 0.0)) return {};
-    while (w < last) {
-      const double next = std::min(w + step, last);
+    for (int above = 0; w < last;) {
+      // longer pieces the longer there was no floor near
+      double next = std::min(w + step * double(1 << std::min(above, 4)), last);
+      if (above_floor(from.x + w * v, from.x + next * v, 0.0)) {
+        ++above;
+        w = next;
+        continue;
+      }
+      above = 0;
+      next = std::min(w + step, last);
       if (const auto at = room_used_up(room, w, next)) return at;
       w = next;
     }
@@ -463,12 +586,13 @@ class VolumeTracer::Run {
         now = stepped(y, k1, part * h, nullptr, nullptr);
       }
     }
-    note_closest_bent(y, k1, chord, h, part);
+    if (course_ == nullptr) note_closest_bent(y, k1, chord, h, part);
     const VolumeState before = s_;
     s_ = unpacked_state(now, before.time + part * h);
     count_turns(before);
     history_.caustics += folds_on_step(before, s_, c);
     s_.p *= 1.0 / (s_.p.norm() * ocean_.speed(s_.x, cell_.index).c);
+    add_knot();
     if (with_track_) out_.track.push_back(s_.x);
     return at_event(met);
   }
@@ -554,7 +678,9 @@ class VolumeTracer::Run {
         wall_ = slab.high;
     }
     const double bulge = 0.25 * (chord.vb - chord.va).norm();  // off the straight line, at most
-    if (std::max(chord.a.z(), chord.b.z()) + bulge < tracer_.shallowest_) return first;
+    if (std::max(chord.a.z(), chord.b.z()) + bulge < tracer_.shallowest_ ||
+        above_floor(chord.a, chord.b, bulge))
+      return first;
     const auto room = [&](double u) {
       const Vec3 x = chord.at(u), v = chord.slope(u);
       const VolumeFloor floor = ocean_.floor(x.x(), x.y());
@@ -565,10 +691,11 @@ class VolumeTracer::Run {
     const int parts = std::isinf(tracer_.spacing_)
                           ? 1
                           : std::clamp(int(std::ceil(2.0 * level / tracer_.spacing_)), 1, 10000);
-    for (int i = 0; i < parts; ++i)
-      if (take(room_used_up(room, double(i) / parts, double(i + 1) / parts), Event::floor,
-               Vec3::Zero()))
-        break;
+    for (int i = 0; i < parts && double(i) / parts < first.at; ++i) {
+      const double begin = double(i) / parts, end = double(i + 1) / parts;
+      if (parts > 1 && above_floor(chord.at(begin), chord.at(end), bulge)) continue;
+      if (take(room_used_up(room, begin, end), Event::floor, Vec3::Zero())) break;
+    }
     return first;
   }
 
@@ -636,6 +763,7 @@ class VolumeTracer::Run {
     const Vec3 jump = (before.gradient - after.gradient) / before.c;
     for (int k = 0; k < 2; ++k)
       s_.p_launch.col(k) += jump * (normal.dot(s_.x_launch.col(k)) / rate);
+    add_knot();
   }
 
   /// A mirror of slope and curvature, in water with a gradient. Neighbours meet it a moment sooner
@@ -721,6 +849,8 @@ class VolumeTracer::Run {
   const VolumeLimits& limits_;
   VolumeRay& out_;
   bool with_track_;
+  std::span<const Vec3> hull_;
+  VolumeCourse* course_ = nullptr;
 
   Vec3 source_ = Vec3::Zero();
   Vec2 first_ = Vec2::Zero();  // the launch direction on the map
@@ -738,6 +868,15 @@ class VolumeTracer::Run {
 void VolumeTracer::trace(const Vec3& from, const Vec3& direction, const Vec3& receiver,
                          const VolumeLimits& limits, VolumeRay& out, bool with_track) const {
   Run(*this, receiver, limits, out, with_track).follow(from, direction);
+}
+
+void VolumeTracer::trace(const Vec3& from, const Vec3& direction, std::span<const Vec3> hull,
+                         const VolumeLimits& limits, VolumeCourse& out) const {
+  VolumeRay ray;
+  out.knots.clear();
+  out.legs.clear();
+  Run(*this, hull, limits, ray, out).follow(from, direction);
+  out.turned = ray.turned;
 }
 
 }  // namespace asdic::detail

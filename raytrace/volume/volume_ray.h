@@ -1,6 +1,8 @@
 #pragma once
+#include <array>
 #include <complex>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "raytrace/ocean/arrivals.h"
@@ -69,6 +71,37 @@ struct VolumeRay {
   std::vector<Vec3> track;  ///< where asked for: places in order
 };
 
+/// A ray as it goes, to say how its legs pass any receiver: all that a search needs of a ray of its
+/// mesh, single precision where that does.
+struct VolumeCourse {
+  struct Knot {
+    Vec3 x, p;
+    std::array<float, 6> x_launch, p_launch;  // column by column
+    double time;
+  };
+  struct Leg {
+    std::uint64_t key, facets;  // VolumeHistory's
+    std::size_t begin, end;     // of its knots
+    double left;                // of its amplitude after reflections and scattering
+    double steep;               // weight of the depth in what is closest
+  };
+  double turned = 0.0;  // VolumeRay's
+  std::vector<Knot> knots;
+  std::vector<Leg> legs;
+  [[nodiscard]] std::size_t bytes() const noexcept {
+    return sizeof *this + knots.capacity() * sizeof(Knot) + legs.capacity() * sizeof(Leg);
+  }
+};
+
+/// Where a leg of a course comes closest to a receiver.
+struct CoursePass {
+  Vec3 x;        ///< [m]
+  Vec3 tangent;  ///< unit
+  Mat32 x_launch;
+};
+[[nodiscard]] CoursePass course_pass(const VolumeCourse& course, std::size_t leg,
+                                     const Vec3& receiver);
+
 /// The unit vectors over which the launch direction is varied: the first raises it, the second
 /// turns it clockwise.
 [[nodiscard]] Mat32 launch_basis(const Vec3& direction) noexcept;
@@ -90,6 +123,10 @@ class VolumeTracer {
   /// \param out  its memory is reused
   void trace(const Vec3& from, const Vec3& direction, const Vec3& receiver,
              const VolumeLimits& limits, VolumeRay& out, bool with_track = false) const;
+  /// The same for many receivers. \param hull  corners of what holds them all: the ray ends when it
+  /// can come back to none
+  void trace(const Vec3& from, const Vec3& direction, std::span<const Vec3> hull,
+             const VolumeLimits& limits, VolumeCourse& out) const;
 
   [[nodiscard]] const VolumeOcean& ocean() const noexcept { return ocean_; }
   [[nodiscard]] double frequency() const noexcept { return frequency_; }
@@ -105,6 +142,7 @@ class VolumeTracer {
 
 /// Area of the ray tube across the ray per solid angle of its launch, with a sign that changes at
 /// every fold and every bounce: det(X, t) [m²/sr].
+[[nodiscard]] double tube_area(const Mat32& x_launch, const Vec3& tangent) noexcept;
 [[nodiscard]] double tube_area(const VolumeState& state) noexcept;
 
 }  // namespace asdic::detail
