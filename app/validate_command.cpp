@@ -171,6 +171,28 @@ std::string run_text(const PropagationCase& run) {
   return text + "\n";
 }
 
+/// Searches in three dimensions that take more than a moment, and about how long: seconds a place
+/// where the floor is uneven and the water bends rays. \param receivers  0: unknown
+std::string search_text(const Environment& ocean, bool uneven, std::size_t receivers, bool field) {
+  const auto [low, high] = speeds(ocean);
+  const bool hard = uneven && high - low > 1e-6 * low;
+  if (receivers == 0)
+    return hard ? "search     paths in three dimensions, where the floor is uneven and the water "
+                  "bends rays: one to ten seconds of processor time for each new place\n"
+                : "";
+  const double n = static_cast<double>(receivers);
+  const double each = hard ? (field ? 0.02 + 3.0 * std::min(1.0, 30.0 / n) : 3.0) : 0.05;
+  const double seconds = n * each + (hard ? 2.0 : 0.0);
+  if (seconds < 2.0) return "";
+  const std::string time = seconds < 120.0 ? fmt::format("{:.0f} s", seconds)
+                                           : fmt::format("{:.0f} min", seconds / 60.0);
+  return fmt::format(
+      "search     paths in three dimensions to {}: about {} of processor time, over a rough floor "
+      "some times that. Sooner with fewer receivers, with a narrower run.fan or with "
+      "run.dimension = 2\n",
+      count_of(receivers, "receiver"), time);
+}
+
 /// Every setting that was read: key, value, unit, and whether the file leaves it to the default.
 std::string all_text(const NotedSettings& noted) {
   std::string text;
@@ -194,7 +216,12 @@ int validate_run(const ValidateOptions& choice, const TomlValue& document) {
     return 0;
   }
   print(emphasised(run.title.empty() ? choice.path : run.title) + '\n');
+  const std::size_t searched = run.source_depths.size() * run.receivers.size();
   print(environment_text(run.environment, run.frequency, std::nullopt) + run_text(run) +
+        (run.dimension == 3 && searched > 0
+             ? search_text(run.environment, run.on_area || run.environment.bottom.shape, searched,
+                           run.task == Task::field)
+             : "") +
         memory_text(run_memory(run, read_budget(choice.path, choice.overrides)), "the run"));
   for (const std::string& note : notes) print("warning: " + note + '\n');
   print(choice.path + ": good\n");
@@ -217,6 +244,10 @@ int validate_sonar(const ValidateOptions& choice, const TomlValue& document) {
   print(environment_text(scenario.environment, simulator.pulse().centre_frequency(),
                          scenario.wind_speed) +
         place_text(scenario.origin) + transect_text(simulator) + sonar_text(simulator) +
+        (scenario.propagation.dimension == 3
+             ? search_text(scenario.environment, scenario.area || scenario.environment.bottom.shape,
+                           0, false)
+             : "") +
         size_text(simulator) + memory_text(memory, "a ping"));
   for (const std::string& note : scenario.notes) print("warning: " + note + '\n');
   print(choice.path + ": good\n");

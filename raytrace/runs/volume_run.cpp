@@ -74,12 +74,12 @@ struct VolumePlaces {
 };
 
 /// What a search may cost, by how many receivers there are, and how near it comes: the phase of a
-/// field needs a thousandth of a wavelength.
+/// field needs a ten-thousandth of a wavelength.
 VolumePrecision volume_precision(const PropagationCase& run_case, double c, std::size_t receivers) {
   VolumePrecision precision{.most_rays = most_volume_rays};
   if (run_case.task != Task::field) return precision;
   const double wavelength = c / run_case.frequency;
-  precision.miss = std::clamp(1e-3 * wavelength, 1e-5, 1e-2);
+  precision.miss = std::clamp(1e-4 * wavelength, 1e-5, 1e-3);
   precision.step = std::clamp(1e-5 * wavelength, 1e-7, 1e-4);
   precision.most_rays = std::clamp(most_field_rays / std::max<std::size_t>(receivers, 1),
                                    least_volume_rays, most_volume_rays);

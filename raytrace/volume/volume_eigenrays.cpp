@@ -520,6 +520,10 @@ class Search {
   void try_later(const std::function<bool(double)>& told) {
     std::stable_sort(guesses_.begin(), guesses_.end(),
                      [](const Guess& a, const Guess& b) { return a.strength > b.strength; });
+    if (guesses_.size() > precision_.most_rays) {
+      report_.given_up += guesses_.size() - precision_.most_rays;
+      guesses_.resize(precision_.most_rays);
+    }
     std::unordered_map<std::uint64_t, std::vector<std::pair<Vec3, double>>> failed;
     const bool uniform = fan_.cuts_of_borders() > 0;
     const std::size_t begun = report_.refined;
@@ -558,6 +562,10 @@ class Search {
         const double diagonal = std::hypot(up, around * corner.cosine);
         if (pass.least > 4.0 * diagonal || pass.strength < too_faint_) continue;
         any = true;
+        if (report_.refined > 2 * precision_.most_rays) {
+          ++report_.given_up;
+          continue;
+        }
         try_root(corner.direction, leg, pass.key, 8.0 * diagonal);
       }
     if (any) ++report_.unfinished;
