@@ -7,6 +7,7 @@
 
 #include "app/command.h"
 #include "app/console.h"
+#include "app/progress_bar.h"
 #include "app/sonar_text.h"
 #include "core/units.h"
 #include "io/scenario/area.h"
@@ -235,10 +236,15 @@ int validate_sonar(const ValidateOptions& choice, const TomlValue& document) {
     print(all_text(noted));
     return 0;
   }
+  // Over rough ground, and where waves are summed, paths take long.
+  std::optional<ProgressBar> bar(std::in_place, "reading the scenario", true);
   PingSimulator simulator(read_scenario(choice.path, choice.overrides), nullptr,
                           read_budget(choice.path, choice.overrides));
+  bar->doing("paths of a ping, for its memory");
   const MemoryBudget memory = simulator.memory();  // before anything takes it
+  bar->doing("paths that a ping may lack");
   simulator.judge_paths();
+  bar.reset();
   const Scenario& scenario = simulator.scenario();
   print(emphasised(scenario.title.empty() ? scenario.path : scenario.title) + '\n');
   print(environment_text(scenario.environment, simulator.pulse().centre_frequency(),

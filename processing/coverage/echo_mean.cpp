@@ -39,8 +39,7 @@ void EchoMeans::pair_up(std::span<const EchoLeg> out, std::span<const EchoLeg> b
                         slowness.dot(beside), power, b.elevation});
     }
   std::erase_if(pairs_, [&](const Pair& p) { return !(p.power > faintest * loudest); });
-  std::stable_sort(pairs_.begin(), pairs_.end(),
-                   [](const Pair& a, const Pair& b) { return a.power > b.power; });
+  sort_by_power();
   const double omega = 2.0 * pi * frequency_, along = omega * deviation_of_even(cell.length),
                across = omega * deviation_of_even(cell.width);
   for (Pair& p : pairs_) {
@@ -52,11 +51,36 @@ void EchoMeans::pair_up(std::span<const EchoLeg> out, std::span<const EchoLeg> b
   }
 }
 
+/// Pairs are large: their order is found first.
+void EchoMeans::sort_by_power() {
+  order_.clear();
+  for (std::size_t i = 0; i < pairs_.size(); ++i)
+    order_.emplace_back(pairs_[i].power, static_cast<std::uint32_t>(i));
+  std::sort(order_.begin(), order_.end(), [](const auto& a, const auto& b) {
+    return a.first != b.first ? a.first > b.first : a.second < b.second;
+  });
+  heard_.clear();
+  for (const auto& [power, i] : order_) heard_.push_back(pairs_[i]);
+  std::swap(pairs_, heard_);
+}
+
 /// Delays at which the filter may answer loudest: of pairs that it resolves, by the energy that it
 /// receives there. What that comes to with its phases may be nothing; then another answers.
 void EchoMeans::choose_times(double apart, std::size_t most) {
   constexpr double least = 0.1;  // of the most energy
   times_.clear();
+  if (pairs_.size() > TurnedSum::few)
+    list_times_of_many(apart);
+  else
+    list_times(apart);
+  std::stable_sort(times_.begin(), times_.end(),
+                   [](const Time& a, const Time& b) { return a.energy > b.energy; });
+  if (times_.size() > most) times_.resize(most);
+  while (times_.size() > 1 && times_.back().energy < least * times_.front().energy)
+    times_.pop_back();
+}
+
+void EchoMeans::list_times(double apart) {
   for (const Pair& p : pairs_) {
     if (std::any_of(times_.begin(), times_.end(),
                     [&](const Time& known) { return std::abs(known.at - p.delay) < apart; }))
@@ -65,11 +89,46 @@ void EchoMeans::choose_times(double apart, std::size_t most) {
     for (const Pair& q : pairs_) time.energy += q.power * std::norm(pulse_(p.delay - q.delay));
     times_.push_back(time);
   }
-  std::stable_sort(times_.begin(), times_.end(),
-                   [](const Time& a, const Time& b) { return a.energy > b.energy; });
-  if (times_.size() > most) times_.resize(most);
-  while (times_.size() > 1 && times_.back().energy < least * times_.front().energy)
-    times_.pop_back();
+}
+
+/// The same times; their energies from those of pairs within sixteenths of what is resolved.
+void EchoMeans::list_times_of_many(double apart) {
+  const auto [first, last] = std::minmax_element(
+      pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) { return a.delay < b.delay; });
+  const double begin = first->delay, length = last->delay - begin;
+  constexpr double most_bins = 1 << 16;
+  const double step = std::max(resolved_ / 16.0, length / most_bins);
+  const auto bin_of = [&](double delay) {
+    return static_cast<std::size_t>((delay - begin) / step);
+  };
+  energies_.assign(bin_of(last->delay) + 1, 0.0);
+  for (const Pair& p : pairs_) energies_[bin_of(p.delay)] += p.power;
+  coherence_.clear();  // of delays that many bins apart
+  for (std::size_t k = 0; k < energies_.size(); ++k) {
+    const double later = static_cast<double>(k) * step;
+    if (later > pulse_.duration()) break;
+    coherence_.push_back(std::norm(pulse_(later)));
+  }
+  // Times in slots as long as they are apart: no slot holds two, and what is near one of a slot is
+  // in that or a neighbour.
+  const auto slot_of = [&](double delay) {
+    return static_cast<std::size_t>((delay - begin) / apart) + 1;
+  };
+  taken_.assign(slot_of(last->delay) + 2, 0);
+  for (const Pair& p : pairs_) {
+    const std::size_t slot = slot_of(p.delay);
+    const auto near = [&](std::size_t of) {
+      return taken_[of] > 0 && std::abs(times_[taken_[of] - 1].at - p.delay) < apart;
+    };
+    if (near(slot - 1) || near(slot) || near(slot + 1)) continue;
+    Time time{.at = p.delay, .elevation = p.elevation, .energy = 0.0};
+    const std::size_t bin = bin_of(p.delay), reach = coherence_.size() - 1;
+    const std::size_t low = bin > reach ? bin - reach : 0;
+    for (std::size_t k = low; k < std::min(energies_.size(), bin + reach + 1); ++k)
+      time.energy += energies_[k] * coherence_[k > bin ? k - bin : bin - k];
+    times_.push_back(time);
+    taken_[slot] = static_cast<std::uint32_t>(times_.size());
+  }
 }
 
 /// Whether the phases of no two pairs turn against one another by much.
@@ -162,6 +221,20 @@ EchoMean EchoMeans::over_phases() {
       open += std::norm(here.open);
       if (here.power * static_cast<double>(pairs_.size()) > unheard * time.energy)
         heard_.push_back(here);
+    }
+    if (heard_.size() > TurnedSum::few) {
+      turning_.clear();
+      double own = 0.0, own_open = 0.0;
+      for (const Pair& p : heard_) {
+        turning_.push_back({p.pressure, p.open, p.along, p.across, p.power});
+        own += p.power;
+        own_open += std::norm(p.open);
+      }
+      const TurnedSum::Sums sums = turned_sum_(turning_);
+      power += sums.power - own;
+      open += sums.open - own_open;
+      apart = std::max(0.0, own * own - sums.kept);
+      heard_.clear();
     }
     for (std::size_t i = 0; i < heard_.size(); ++i) {
       const Pair& a = heard_[i];

@@ -1,9 +1,12 @@
 #pragma once
 #include <complex>
+#include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/units.h"
+#include "processing/coverage/turned_sum.h"
 #include "reverb/power/pulse_coherence.h"
 
 namespace asdic::detail {
@@ -39,7 +42,9 @@ struct EchoMean {
 ///
 /// Where phases turn little over the cell it is a sum over places in it. Elsewhere it is the
 /// greatest mean: two pairs whose phases turn against one another by Δ, as standard deviation, keep
-/// e^{−½Δ²} of what they are together.
+/// e^{−½Δ²} of what they are together. Few pairs are added up one by one; of many, as come over
+/// rough ground, the sums are those of TurnedSum, and energies are told in sixteenths of what the
+/// filter resolves.
 class EchoMeans {
  public:
   /// \param pulse  must outlive this
@@ -59,7 +64,10 @@ class EchoMeans {
     double at, elevation, energy;
   };
   void pair_up(std::span<const EchoLeg> out, std::span<const EchoLeg> back, const EchoCell& cell);
+  void sort_by_power();
   void choose_times(double apart, std::size_t most);
+  void list_times(double apart);
+  void list_times_of_many(double apart);
   [[nodiscard]] bool turns_slowly() const;
   [[nodiscard]] EchoMean over_places();
   [[nodiscard]] EchoMean over_phases();
@@ -69,7 +77,13 @@ class EchoMeans {
   const PulseCoherence& pulse_;
   double resolved_;  // [s]
   // Used again from cell to cell.
-  std::vector<Pair> pairs_, heard_;
+  std::vector<Pair> pairs_;
+  std::vector<Pair> heard_;
+  TurnedSum turned_sum_;
+  std::vector<TurnedSum::Sound> turning_;
+  std::vector<double> energies_, coherence_;
+  std::vector<std::uint32_t> taken_;
+  std::vector<std::pair<double, std::uint32_t>> order_;
   std::vector<Time> times_;
   std::vector<std::complex<double>> answers_, places_;
 };
