@@ -15,4 +15,11 @@ namespace asdic::detail {
                                                    double source_depth, double receiver_depth,
                                                    double range);
 
+/// Where that found none: the one of its history that leaves nearest, out of some thirty rays on
+/// either side up to 0.15° from it. Metres at kilometres turn a path by hundredths of a degree,
+/// beside a fold some times as much. Null if no two neighbours of them enclose the receiver.
+[[nodiscard]] std::optional<Arrival> path_beside(const RayTracer& tracer, const Arrival& path,
+                                                 double source_depth, double receiver_depth,
+                                                 double range);
+
 }  // namespace asdic::detail

@@ -55,6 +55,11 @@ void sort_by_delay(Arrivals& arrivals) {
                    [](const Arrival& a, const Arrival& b) { return a.delay < b.delay; });
 }
 
+bool same_history(const Arrival& a, const Arrival& b) noexcept {
+  return a.surface_bounces == b.surface_bounces && a.bottom_bounces == b.bottom_bounces &&
+         a.upper_turns == b.upper_turns && a.lower_turns == b.lower_turns;
+}
+
 /// No wider than paths that were known a moment before ask for: their bounces, and launch angles up
 /// to a degree beyond, five at least: those that leave almost level turn most (same_path in
 /// moving_paths.h).
@@ -253,6 +258,7 @@ Arrivals PropagationPaths::followed(std::span<const Arrival> known, const Vec3& 
   std::optional<RayTracer> tracer;
   if (!layered_ && !volume()) tracer.emplace(environment_of(plane(from, to)), frequency);
   Arrivals found;
+  std::vector<const Arrival*> lost;  // over a map
   for (const Arrival& path : known) {
     std::optional<Arrival> same;
     if (path.kind == ArrivalKind::diffracted)
@@ -265,8 +271,22 @@ Arrivals PropagationPaths::followed(std::span<const Arrival> known, const Vec3& 
       same = followed_path(*tracer, path, from.z(), to.z(), range);
     if (path.kind == ArrivalKind::caustic && !(same && keeps_amplitude(path, *same, frequency)))
       return find(from, to, frequency, limits);  // that of all rays of its term
+    if (!same && tracer && area_) {
+      lost.push_back(&path);
+      continue;
+    }
     if (!same) return search(from, to, frequency, limits_around(known, limits));
     found.push_back(std::move(*same));
+  }
+  // Over rough ground some of hundreds always part: those alone are looked for, where they were.
+  for (const Arrival* path : lost) {
+    constexpr double same_ray = 1e-6;  // [rad]
+    std::optional<Arrival> same = path_beside(*tracer, *path, from.z(), to.z(), range);
+    if (same && std::none_of(found.begin(), found.end(), [&](const Arrival& other) {
+          return same_history(other, *same) &&
+                 std::abs(other.launch_elevation - same->launch_elevation) < same_ray;
+        }))
+      found.push_back(std::move(*same));
   }
   sort_by_delay(found);
   return found;
