@@ -130,6 +130,7 @@ class Maker {
     return static_cast<std::size_t>(settings_.bearings) *
            static_cast<std::size_t>(settings_.ranges);
   }
+  static constexpr double planes_share = 0.1;  // of the work: planes of all directions
   void tell(double share) const {
     if (progress_ && !progress_(share)) throw Interrupted();
   }
@@ -360,7 +361,7 @@ class Maker {
     // From the array a cell's bearing is its plane's; from the source any may be.
     constexpr int most = 180;
     const int sectors = std::min(settings_.bearings, most);
-    all_round_ = out_->all_round(sectors);
+    all_round_ = out_->all_round(sectors, [&](double share) { tell(planes_share * share); });
     for (std::size_t i = 0; i < parts_.size(); ++i)
       out_groups_.push_back(
           std::make_shared<FanGroups>(*all_round_[first_part_ + i], alike(parts_[i]), frequency()));
@@ -396,7 +397,8 @@ class Maker {
                by_arrivals() ? nullptr : fans.back[depth].get(), means);
       for (std::size_t i = 0; i < parts_.size(); ++i)
         reverberation(j, i, fans.out[first_part_ + i], fans.back[first_part_ + i]);
-      tell(0.7 * static_cast<double>(++done) / static_cast<double>(first_only));
+      const double from = all_round_.empty() ? 0.0 : planes_share;
+      tell(std::lerp(from, 0.7, static_cast<double>(++done) / static_cast<double>(first_only)));
     });
     if (symmetric) spread_first_bearing();
     for (std::size_t j = 0; j < bearings; ++j)

@@ -1,6 +1,7 @@
 #include "processing/coverage/plane_fans.h"
 
 #include <algorithm>
+#include <atomic>
 #include <utility>
 
 #include "raytrace/parallel/parallel.h"
@@ -61,12 +62,14 @@ PlaneFans::Fans PlaneFans::at(double bearing) const {
   return found;
 }
 
-PlaneFans::Fans PlaneFans::all_round(int sectors) const {
+PlaneFans::Fans PlaneFans::all_round(int sectors, const std::function<void(double)>& tell) const {
   if (paths_.layered() || levels_.empty()) return everywhere_;
   const auto count = static_cast<std::size_t>(sectors);
   std::vector<std::vector<FanPlane>> all(count);
+  std::atomic<int> done = 0;
   in_parallel(count, [&](std::size_t i) {
     all[i] = planes(2.0 * pi * (static_cast<double>(i) + 0.5) / sectors);
+    tell(static_cast<double>(++done) / sectors);
   });
   Fans found;
   for (std::size_t level = 0; level < levels_.size(); ++level) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -28,7 +29,8 @@ class PlaneFans {
   /// \param bearing  [rad]
   [[nodiscard]] Fans at(double bearing) const;
   /// Fans of all directions, a plane a sector; of a layered ocean as at().
-  [[nodiscard]] Fans all_round(int sectors) const;
+  /// \param tell  called with the share that is done, from any thread
+  [[nodiscard]] Fans all_round(int sectors, const std::function<void(double)>& tell) const;
 
  private:
   [[nodiscard]] std::vector<FanPlane> planes(double bearing) const;
