@@ -63,7 +63,8 @@ class PieceSounds {
     constexpr double nothing = 18.0;  // e⁻⁹
     if (sounds_.empty()) return;
     const double wavenumber = 2.0 * pi * sheet_.ends().frequency / sheet_.ends().receiver_speed;
-    const double spread = wavenumber * wavenumber * phones_.spread(outward, sounds_.front().delay);
+    const ReceivingPhones::Along phones = phones_.along(outward, sounds_.front().delay);
+    const double spread = wavenumber * wavenumber * phones.square;
     std::sort(sounds_.begin(), sounds_.end(),
               [](const Sound& a, const Sound& b) { return a.delay < b.delay; });
     for (std::size_t i = 0; i < sounds_.size(); ++i) {
@@ -81,7 +82,8 @@ class PieceSounds {
         if (!(turned < nothing)) continue;
         const double both =
             std::exp(-0.5 * turned) *
-            std::real(a.pressure * std::conj(b.pressure) * std::conj(pulse_(b.delay - a.delay)));
+            std::real(a.pressure * std::conj(b.pressure) * std::conj(pulse_(b.delay - a.delay)) *
+                      std::polar(1.0, wavenumber * phones.middle * aside));
         a.power += both;
         b.power += both;
       }
@@ -120,13 +122,29 @@ class PieceSounds {
 
 }  // namespace
 
-double ReceivingPhones::spread(const Vec2& outward, double delay) const {
-  double sum = 0.0;
+ReceivingPhones::Along ReceivingPhones::along(const Vec2& outward, double delay) const {
+  if (offsets.empty()) return {};
+  Along found;
+  double square = 0.0;
   for (const Vec2& offset : offsets) {
-    const double along = outward.dot(offset + delay * velocity);
-    sum += along * along;
+    const double place = outward.dot(offset + delay * velocity);
+    found.middle += place / static_cast<double>(offsets.size());
+    square += place * place / static_cast<double>(offsets.size());
   }
-  return offsets.empty() ? 0.0 : sum / static_cast<double>(offsets.size());
+  found.square = std::max(0.0, square - found.middle * found.middle);
+  return found;
+}
+
+bool ReceivingPhones::alike_all_round() const {
+  constexpr double nowhere = 1e-3;  // [m²]
+  double xx = 0.0, yy = 0.0, xy = 0.0;
+  for (const Vec2& offset : offsets) {
+    xx += offset.x() * offset.x();
+    yy += offset.y() * offset.y();
+    xy += offset.x() * offset.y();
+  }
+  const double unlike = std::hypot(0.5 * (xx - yy), xy);
+  return velocity.isZero(0.0) && unlike <= nowhere * static_cast<double>(offsets.size());
 }
 
 std::vector<double> ring_edges(double reach, double height, double delay_step) {

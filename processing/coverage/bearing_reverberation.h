@@ -32,8 +32,14 @@ struct ReceivingPhones {
   std::vector<Vec2> offsets;     ///< when the ping is sent [m]
   Vec2 velocity = Vec2::Zero();  ///< [m/s]
 
-  /// Mean square of their distance along a direction, when sound is received [m²].
-  [[nodiscard]] double spread(const Vec2& outward, double delay) const;
+  /// Of their places along a direction when sound is received: the middle, and the mean square
+  /// about it.
+  struct Along {
+    double middle = 0.0, square = 0.0;  // [m], [m²]
+  };
+  [[nodiscard]] Along along(const Vec2& outward, double delay) const;
+  /// Whether that is the same of all directions.
+  [[nodiscard]] bool alike_all_round() const;
 };
 
 /// Reverberation of a sector of bearing: mean power over delay and elevation, of a source of 1 at 1

@@ -14,6 +14,7 @@
 #include "processing/coverage/echo_mean.h"
 #include "processing/coverage/filter_weights.h"
 #include "processing/coverage/plane_fans.h"
+#include "processing/coverage/pulse_band.h"
 #include "processing/detection_threshold.h"
 #include "raytrace/parallel/parallel.h"
 #include "raytrace/warnings/warnings.h"
@@ -83,6 +84,11 @@ std::size_t kind_of(const ScatteringPart& part) {
   return *part.level.boundary == BoundaryKind::surface ? 0 : 1;
 }
 
+/// Velocities of source and array together, by which sound of what lies still is shifted [m/s].
+Vec2 closing_of(const PingGeometry& geometry, int array) {
+  return (geometry.source().velocity + geometry.reference_place(array).velocity).head<2>();
+}
+
 class Maker {
  public:
   Maker(const PingSimulator& simulator, const CoverageSettings& settings, const Progress& progress)
@@ -100,9 +106,10 @@ class Maker {
         phones_(geometry_.phones(settings.array)),
         step_(settings.reach / settings.ranges),
         spacing_(paths_.layered() ? part_of(step_) : step_),
-        nodes_(phones_, paths_.speed_at(receiver()) / frequency()),
-        beams_(phones_, frequency(), paths_.speed_at(receiver()), settings.bearings, nodes_,
-               noise_field(scenario_, settings.array)) {}
+        band_(pulse_),
+        nodes_(phones_, paths_.speed_at(receiver()) / frequency(), closing().norm() / band_.half()),
+        beams_(phones_, band_, frequency(), paths_.speed_at(receiver()), settings.bearings, nodes_,
+               noise_field(scenario_, settings.array), closing()) {}
 
   Coverage make() {
     begin();
@@ -121,6 +128,7 @@ class Maker {
   [[nodiscard]] const Vec3& receiver() const {
     return geometry_.reference_place(settings_.array).position;
   }
+  [[nodiscard]] Vec2 closing() const { return closing_of(geometry_, settings_.array); }
   [[nodiscard]] double apart() const { return (source() - receiver()).head<2>().norm(); }
   /// One plane serves both ends: they lie over one another, or the ocean is layered.
   [[nodiscard]] bool together() const { return apart() < 0.5 * step_; }
@@ -264,8 +272,8 @@ class Maker {
     tell_of(!scenario_.interferers.empty(),
             "interferer: the noise of ships is not in the picture of the area");
     tell_of(pulse_.duration() * pulse_.bandwidth_99() < 10.0 && !parts_.empty(),
-            "pulse: the picture of the area does not filter by Doppler; a target that moves stands "
-            "out better from reverberation");
+            "pulse: the picture of the area is that of targets at rest; one that moves stands out "
+            "better from reverberation");
     tell_of(!paths_.layered(),
             "environment: over slopes and fronts the picture of the area is right as a mean over "
             "cells; a cell by itself may be off by its uncertainty_db");
@@ -387,20 +395,23 @@ class Maker {
         density_[k].assign(axis_.bins * row, 0.0F);
     std::atomic<std::size_t> done = 0;
     const bool symmetric = paths_.layered() && apart() < 1e-3 && pattern_.azimuthally_symmetric();
-    // Of a sea that is the same all round one bearing tells them all.
-    const std::size_t first_only = symmetric ? 1 : bearings;
-    in_parallel(first_only, [&](std::size_t j) {
+    // Of a sea that is the same all round one bearing tells them all: its echoes, and what comes
+    // back to an array to which paths are in phase from all bearings alike.
+    const bool same = symmetric && receiving_phones().alike_all_round();
+    const std::size_t walked = same ? 1 : bearings;
+    in_parallel(walked, [&](std::size_t j) {
       const Ends fans = fans_at(made_.bearings[j]);
       EchoMeans means(frequency(), *coherence_, pulse_.bandwidth_99());
-      for (std::size_t depth = 0; depth < settings_.depths.size(); ++depth)
+      for (std::size_t depth = 0; depth < settings_.depths.size() && (j == 0 || !symmetric);
+           ++depth)
         echoes(j, depth, by_arrivals() ? nullptr : fans.out[depth].get(),
                by_arrivals() ? nullptr : fans.back[depth].get(), means);
       for (std::size_t i = 0; i < parts_.size(); ++i)
         reverberation(j, i, fans.out[first_part_ + i], fans.back[first_part_ + i]);
       const double from = all_round_.empty() ? 0.0 : planes_share;
-      tell(std::lerp(from, 0.7, static_cast<double>(++done) / static_cast<double>(first_only)));
+      tell(std::lerp(from, 0.7, static_cast<double>(++done) / static_cast<double>(walked)));
     });
-    if (symmetric) spread_first_bearing();
+    if (symmetric) spread_first_bearing(same);
     for (std::size_t j = 0; j < bearings; ++j)
       for (int i = 0; i < settings_.ranges; ++i)
         made_.bottom_depth[j * static_cast<std::size_t>(settings_.ranges) +
@@ -414,8 +425,8 @@ class Maker {
            Vec3(r * std::sin(made_.bearings[bearing]), r * std::cos(made_.bearings[bearing]), 0.0);
   }
 
-  /// What the first bearing has found holds for the others.
-  void spread_first_bearing() {
+  /// What the first bearing has found holds for the others. \param reverberation  that, too
+  void spread_first_bearing(bool reverberation) {
     const auto ranges = static_cast<std::size_t>(settings_.ranges);
     const auto bearings = static_cast<std::size_t>(settings_.bearings);
     const auto spread = [&](auto& values) {
@@ -431,6 +442,7 @@ class Maker {
       spread(layer.certainty);
       spread(elevation_[d]);
     }
+    if (!reverberation) return;
     for (std::vector<float>& density : density_)
       for (std::size_t row = 0; row < density.size(); row += bearings * nodes_.size())
         for (std::size_t j = 1; j < bearings; ++j)
@@ -684,14 +696,17 @@ class Maker {
     const std::size_t row = static_cast<std::size_t>(settings_.bearings) * nodes_.size();
     std::vector<std::optional<std::vector<float>>> beams(nodes_.size());
     std::vector<double> gains(nodes_.size());
+    std::vector<float> sidelobe(nodes_.size());  // half of the most that a sector has
     for (std::size_t d = 0; d < made_.layers.size(); ++d) {
       CoverageLayer& layer = made_.layers[d];
+      std::vector<double> aside(ranges, 0.0);
       for (std::size_t cell = j * ranges; cell < (j + 1) * ranges; ++cell) {
         if (layer.certainty[cell] == std::int8_t(CoverageCertainty::no_water)) continue;
         const std::size_t node = nodes_.nearest(double(elevation_[d][cell]));
         if (!beams[node]) {
           beams[node].emplace(row);
           beams_.beam(made_.bearings[j], node, *beams[node]);
+          sidelobe[node] = 0.5F * *std::max_element(beams[node]->begin(), beams[node]->end());
           gains[node] = beams_.gain_over_noise_db(made_.bearings[j], node);
         }
         // Of a cell that nothing answers from: as if along a straight line.
@@ -699,9 +714,14 @@ class Maker {
         const double delay = std::isnan(layer.delay[cell])
                                  ? (2.0 * range + apart()) / paths_.speed_at(receiver())
                                  : double(layer.delay[cell]);
-        double reverberation = 0.0;
+        double reverberation = 0.0, sidelobes = 0.0;
         for (const std::vector<float>& density : density_)
-          if (!density.empty()) reverberation += received(density, *beams[node], delay);
+          if (!density.empty()) {
+            const Received part = received(density, *beams[node], sidelobe[node], delay);
+            reverberation += part.all;
+            sidelobes += part.sidelobes;
+          }
+        if (reverberation > 0.0) aside[cell - j * ranges] = sidelobes / reverberation;
         const BeamLevels levels{
             .echo_db = double(layer.echo_db[cell]),
             .reverberation_db = projector_.source_level_db + db_from_power(reverberation),
@@ -713,17 +733,23 @@ class Maker {
         layer.detection_probability[cell] =
             static_cast<float>(probability(excess + made_.threshold_db));
       }
-      tell_change_of_reverberation(layer, j * ranges);
+      tell_uncertainty(layer, j * ranges, aside);
     }
   }
 
-  /// Standard deviation of reverberation over a cell, half of the way to its neighbours' levels,
-  /// and of what fans leave open. \param first  cell of a bearing
-  void tell_change_of_reverberation(CoverageLayer& layer, std::size_t first) const {
+  /// Standard deviation of reverberation in a cell: over it and by what blurs it, of fans, of what
+  /// beams hear in their sidelobes, and of a moving source that is elsewhere.
+  /// \param first  cell of a bearing   \param aside  shares of sidelobes, by range
+  void tell_uncertainty(CoverageLayer& layer, std::size_t first,
+                        const std::vector<double>& aside) const {
     // Measured against pings: docs/theory/coverage.md.
     const double of_fans = paths_.layered() ? 0.5 : 1.0;
+    constexpr double of_sidelobes = 1.0, edge = 6.0;  // [dB]
     const std::vector<float>& level = layer.reverberation_db;
     const auto ranges = static_cast<std::size_t>(settings_.ranges);
+    // A level is blurred over bins of delay, and sound from elsewhere comes early or late.
+    const double cell = 2.0 * step_ / paths_.speed_at(receiver());
+    const double blurred = std::max(1.0, (axis_.step + beams_.smear()) / cell);
     for (std::size_t i = 0; i < ranges; ++i) {
       if (std::isnan(level[first + i])) continue;
       double change = 0.0;
@@ -731,14 +757,29 @@ class Maker {
         if (next < ranges && !std::isnan(level[first + next]) &&
             level[first + next] != level[first + i])  // both may be none
           change = std::max(change, std::abs(double(level[first + next] - level[first + i])));
-      layer.reverberation_uncertainty_db[first + i] =
-          static_cast<float>(std::hypot(of_fans, change / std::sqrt(3.0)));
+      // Even on a slope; all of it at an edge, of which a cell may lie on either side.
+      const double steps = blurred * change / (change > edge ? 1.0 : std::sqrt(3.0));
+      layer.reverberation_uncertainty_db[first + i] = static_cast<float>(
+          std::hypot(std::hypot(of_fans, steps),
+                     std::hypot(of_sidelobes * aside[i], of_moving_source(made_.ranges[i]))));
     }
   }
 
-  /// Power in a beam at a delay.
-  [[nodiscard]] double received(const std::vector<float>& density, const std::vector<float>& beam,
-                                double delay) const {
+  /// Of a source under way whose sound is taken to come from the array's direction [dB].
+  [[nodiscard]] double of_moving_source(double range) const {
+    if (together()) return 0.0;
+    const double turned = std::min(2.0, 2.0 * apart() / range);
+    const double shift = turned * geometry_.source().velocity.head<2>().norm() * frequency() /
+                         paths_.speed_at(receiver());
+    return -db_from_power(std::max(1e-3, band_.passes(shift)));
+  }
+
+  /// Power in a beam, and what of it comes in where it answers less than `sidelobe`.
+  struct Received {
+    double all = 0.0, sidelobes = 0.0;
+  };
+  [[nodiscard]] Received received(const std::vector<float>& density, const std::vector<float>& beam,
+                                  float sidelobe, double delay) const {
     const double at =
         std::clamp(delay / axis_.step - 0.5, 0.0, static_cast<double>(axis_.bins) - 1.001);
     const auto bin = static_cast<std::size_t>(at);
@@ -746,15 +787,23 @@ class Maker {
     const float* const a = &density[bin * beam.size()];
     const float* const b = a + beam.size();
     constexpr std::size_t lanes = 8;  // summed beside one another: the compiler may not reorder
-    float sums[lanes] = {};
+    float sums[lanes] = {}, aside[lanes] = {};
     std::size_t i = 0;
     for (; i + lanes <= beam.size(); i += lanes)
-      for (std::size_t k = 0; k < lanes; ++k)
-        sums[k] += beam[i + k] * (a[i + k] + later * (b[i + k] - a[i + k]));
-    double sum = 0.0;
-    for (const float part : sums) sum += double(part);
-    for (; i < beam.size(); ++i) sum += double(beam[i] * (a[i] + later * (b[i] - a[i])));
-    return sum;
+      for (std::size_t k = 0; k < lanes; ++k) {
+        const float power = a[i + k] + later * (b[i + k] - a[i + k]);
+        sums[k] += beam[i + k] * power;
+        aside[k] += (beam[i + k] < sidelobe ? beam[i + k] : 0.0F) * power;
+      }
+    Received found;
+    for (const float part : sums) found.all += double(part);
+    for (const float part : aside) found.sidelobes += double(part);
+    for (; i < beam.size(); ++i) {
+      const float power = beam[i] * (a[i] + later * (b[i] - a[i]));
+      found.all += double(power);
+      if (beam[i] < sidelobe) found.sidelobes += double(power);
+    }
+    return found;
   }
 
   const PingSimulator& simulator_;
@@ -770,6 +819,7 @@ class Maker {
   std::vector<Vec3> phones_;
   double step_;     // of the ranges [m]
   double spacing_;  // of the fans' cells: an odd part of it, whose middles are among them [m]
+  PulseBand band_;
   ElevationNodes nodes_;
   BeamBank beams_;
   Coverage made_;
@@ -813,16 +863,18 @@ void check(const PingSimulator& simulator, const CoverageSettings& settings) {
 MemoryNeed coverage_need(const PingSimulator& simulator, const CoverageSettings& settings) {
   check(simulator, settings);
   const PingGeometry geometry = simulator.geometry(settings.ping);
+  const Pulse& pulse = simulator.pulse(geometry.sent().transmitter);
   const double wavelength =
       simulator.paths().speed_at(geometry.reference_place(settings.array).position) /
-      simulator.pulse(geometry.sent().transmitter).centre_frequency();
+      pulse.centre_frequency();
+  const double way = closing_of(geometry, settings.array).norm() / PulseBand(pulse).half();
 
   const double cells = static_cast<double>(settings.bearings) * settings.ranges;
   constexpr double a_cell = 9.0 * sizeof(float) + 1.0 + sizeof(float);
   // Reverberation over delay, elevation and bearing, twice while the pulse is laid over it.
   constexpr double bins = 4.0;
   const auto nodes =
-      static_cast<double>(ElevationNodes(geometry.phones(settings.array), wavelength).size());
+      static_cast<double>(ElevationNodes(geometry.phones(settings.array), wavelength, way).size());
   return {.where = "--ranges",
           .what = "a picture of " + std::to_string(settings.bearings) + " bearings and " +
                   std::to_string(settings.ranges) + " ranges",

@@ -110,6 +110,55 @@ TEST(Coverage, OfStraightRaysOverALambertBottom) {
     }
 }
 
+/// ∫|S(f + ½ν)|²|S(f − ½ν)|²g(f)df over ∫|S|⁴df: what the matched filter of a pulse passes of even
+/// sound that is shifted by ν against its replica, g(f) what a beam hears at f from the centre.
+class FilterOf {
+ public:
+  explicit FilterOf(const Pulse& pulse) : pulse_(pulse) {
+    for (int k = 0; k < lines; ++k) {
+      at_[std::size_t(k)] = (k + 0.5 - lines / 2) * step();
+      power_[std::size_t(k)] = power(at_[std::size_t(k)]);
+      whole_ += power_[std::size_t(k)] * power_[std::size_t(k)];
+    }
+  }
+  template <class Heard>
+  [[nodiscard]] double passes(double shift, const Heard& heard) const {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < lines; ++k)
+      sum += (shift == 0.0 ? power_[k] * power_[k]
+                           : power(at_[k] + 0.5 * shift) * power(at_[k] - 0.5 * shift)) *
+             heard(at_[k]);
+    return sum / whole_;
+  }
+
+ private:
+  static constexpr int lines = 64;
+  [[nodiscard]] double step() const { return 1.2 * pulse_.bandwidth_99() / lines; }
+  /// |S|² by its definition.
+  [[nodiscard]] double power(double from_centre) const {
+    std::complex<double> sum = 0.0;
+    const int steps = std::max(64, int(6.0 * pulse_.bandwidth_99() * pulse_.duration()));
+    for (int i = 0; i < steps; ++i) {
+      const double t = (i + 0.5) / steps * pulse_.duration();
+      sum += pulse_.analytic(t) *
+             std::polar(1.0, -2.0 * pi * (pulse_.centre_frequency() + from_centre) * t);
+    }
+    return std::norm(sum / double(steps));
+  }
+
+  const Pulse& pulse_;
+  std::array<double, lines> at_ = {}, power_ = {};
+  double whole_ = 0.0;
+};
+
+/// |w·e|² of phones half a wavelength apart at 1500 Hz, over the difference of cosines.
+double lobe_of(int phones, double difference, double from_centre) {
+  const double half = 0.25 * 2.0 * pi * difference * (1500.0 + from_centre) / 1500.0;
+  const double x =
+      std::abs(std::sin(half)) < 1e-9 ? 1.0 : std::sin(phones * half) / (phones * std::sin(half));
+  return x * x;
+}
+
 // What a line receives of sound that comes from all bearings alike under one angle is the mean of
 // its beam over them: left and right together. Noise alike from phone to phone: 10 lg n.
 TEST(Coverage, ABeamOfALineHearsBothItsSides) {
@@ -118,23 +167,20 @@ TEST(Coverage, ABeamOfALineHearsBothItsSides) {
   const PingSimulator one(scenario(straight));
   const CoverageSettings settings = small(200.0, 12e3, 24, 36);
   const Coverage found = coverage(simulator, settings), open = coverage(one, settings);
-  const auto response = [&](double looks, double comes, double elevation) {
-    std::complex<double> sum = 0.0;
-    const Vec3 axis = direction(radians(20.0), 0.0);
-    for (int n = 0; n < 12; ++n)
-      sum += std::polar(1.0, 2.0 * pi * 1500.0 / 1500.0 * 0.5 * (n - 5.5) *
-                                 axis.dot(direction(comes, elevation) - direction(looks, 0.0)));
-    return std::norm(sum) / 144.0;
-  };
+  const Vec3 axis = direction(radians(20.0), 0.0);
+  const FilterOf filter(simulator.pulse());
   double loudest = -infinity, quietest = infinity;
   for (std::size_t j = 0; j < found.bearings.size(); ++j)
     for (const std::size_t i : {10U, 16U, 23U}) {
       const std::size_t cell = j * found.ranges.size() + i;
       const double elevation = -std::asin(1800.0 / found.ranges[i]);
       double mean = 0.0;
-      constexpr int steps = 2000;
-      for (int k = 0; k < steps; ++k)
-        mean += response(found.bearings[j], 2.0 * pi * (k + 0.5) / steps, elevation) / steps;
+      constexpr int steps = 500;
+      for (int k = 0; k < steps; ++k) {
+        const double off = axis.dot(direction(2.0 * pi * (k + 0.5) / steps, elevation) -
+                                    direction(found.bearings[j], 0.0));
+        mean += filter.passes(0.0, [&](double f) { return lobe_of(12, off, f); }) / steps;
+      }
       const double gained = double(found.layers[0].reverberation_db[cell]) -
                             double(open.layers[0].reverberation_db[cell]);
       // Elevations lie between nodes some degrees apart.
@@ -148,28 +194,111 @@ TEST(Coverage, ABeamOfALineHearsBothItsSides) {
   EXPECT_GT(loudest, quietest + 2.0);
 }
 
-// A long line looks along itself at a target in its own depth. The bottom's sound comes from below:
-// in the sidelobes, of which there are several between the elevations of a shorter array.
+// A long line looks along itself at a target in its own depth. The bottom's sound comes from below
+// and behind: in the sidelobes. Half a wavelength apart at the middle of the sweep, phones hear
+// what is behind in the upper half of it as if it came from ahead.
 TEST(Coverage, ALongLineHearsTheBottomInItsSidelobes) {
   const PingSimulator simulator(scenario(straight, {"array.phones=96", "array.spacing=0.5"}));
   const PingSimulator one(scenario(straight));
   const CoverageSettings settings = small(200.0, 12e3, 60, 36);
   const Coverage found = coverage(simulator, settings), open = coverage(one, settings);
-  for (const std::size_t i : {20U, 24U, 28U, 36U, 44U}) {
+  const FilterOf filter(simulator.pulse());
+  double most = 0.0;
+  for (const std::size_t i : {20U, 24U, 28U, 36U, 44U, 54U}) {
     const double cosine = std::sqrt(1.0 - std::pow(1800.0 / found.ranges[i], 2));
     const double looks = std::cos(found.bearings[0]);
-    double mean = 0.0;
-    constexpr int steps = 20000;
+    double mean = 0.0, at_centre = 0.0;
+    constexpr int steps = 4000;
     for (int k = 0; k < steps; ++k) {
-      const double half = 0.25 * 2.0 * pi * (std::cos(2.0 * pi * k / steps) * cosine - looks);
-      const double lobe =
-          std::abs(std::sin(half)) < 1e-9 ? 1.0 : std::sin(96.0 * half) / (96.0 * std::sin(half));
-      mean += lobe * lobe / steps;
+      const double off = std::cos(2.0 * pi * k / steps) * cosine - looks;
+      mean += filter.passes(0.0, [&](double f) { return lobe_of(96, off, f); }) / steps;
+      at_centre += lobe_of(96, off, 0.0) / steps;
     }
     const double gained =
         double(found.layers[0].reverberation_db[i]) - double(open.layers[0].reverberation_db[i]);
-    // Two elevations in a lobe, straight between them.
+    // Two elevations in a lobe, straight between them: that is told.
     EXPECT_NEAR(gained, db_from_power(mean), 1.0) << found.ranges[i];
+    EXPECT_GT(double(found.layers[0].reverberation_uncertainty_db[i]), 1.0) << found.ranges[i];
+    most = std::max(most, db_from_power(mean / at_centre));
+  }
+  EXPECT_GT(most, 4.0);  // the beam at the centre alone must fail
+}
+
+// Under way the replica is that of what rests where the beam looks: of other directions a part
+// passes. A tone's filter and one phone; a sweep, and a line ahead, abeam and astern.
+TEST(Coverage, AShipUnderWayHearsWhatItsFilterPasses) {
+  constexpr double speed = 8.0, height = 1800.0;
+  const auto differs = [&](const std::vector<std::string>& changes, int phones, double tolerance) {
+    std::vector<std::string> under_way = changes;
+    under_way.emplace_back("platform.velocity=[0,8,0]");
+    const CoverageSettings settings = small(200.0, 12e3, 60, 36);
+    const PingSimulator simulator(scenario(straight, under_way));
+    const Coverage found = coverage(simulator, settings);
+    const Coverage rest = coverage(PingSimulator(scenario(straight, changes)), settings);
+    const FilterOf filter(simulator.pulse());
+    constexpr int bearings = 180;
+    double most = 0.0;
+    for (const std::size_t j : {0U, 9U, 18U})
+      for (const std::size_t i : {20U, 44U}) {
+        const double cosine = std::sqrt(1.0 - std::pow(height / found.ranges[i], 2));
+        const double looks = std::cos(found.bearings[j]);
+        double now = 0.0, before = 0.0;
+        for (int k = 0; k < bearings; ++k) {
+          const double off = std::cos(2.0 * pi * (k + 0.5) / bearings) * cosine - looks;
+          const auto heard = [&](double f) { return phones > 1 ? lobe_of(phones, off, f) : 1.0; };
+          now += filter.passes(2.0 * speed / 1500.0 * 1500.0 * off, heard);
+          before += filter.passes(0.0, heard);
+        }
+        const double truth = db_from_power(now / before);
+        const std::size_t cell = j * found.ranges.size() + i;
+        EXPECT_NEAR(double(found.layers[0].reverberation_db[cell]) -
+                        double(rest.layers[0].reverberation_db[cell]),
+                    truth, tolerance)
+            << j << ' ' << i;
+        most = std::max(most, std::abs(truth));
+      }
+    return most;
+  };
+  const std::string tone = R"(pulse={kind="cw",frequency=1500.0,duration=0.5,window="hann"})";
+  EXPECT_GT(differs({tone}, 1, 0.5), 5.0);
+  EXPECT_GT(differs({"array.phones=32"}, 32, 0.4), 0.7);
+}
+
+// Direct and by the surface, out and back: the two orders are in phase. Ahead they turn while the
+// ship goes on, by k·vt·(cos a − cos b), and abeam they do not: no bearing stands for all.
+TEST(Coverage, WhatComesBackByTwoWaysTurnsWithTheShipsWay) {
+  constexpr double speed = 8.0;
+  const auto lost = [&](double heading, std::size_t j, std::size_t i) {
+    const std::vector<std::string> rests = {
+        "array.phones=32", "array.heading_deg=" + std::to_string(heading),
+        "environment.wind_speed=0.0", "propagation.max_surface_bounces=1"};
+    std::vector<std::string> goes = rests;  // towards bearing 5°
+    goes.emplace_back("platform.velocity=[0.697246,7.969558,0.0]");
+    const CoverageSettings settings = small(200.0, 12e3, 60, 36);
+    const Coverage before = coverage(PingSimulator(scenario(straight, rests)), settings),
+                   now = coverage(PingSimulator(scenario(straight, goes)), settings);
+    const std::size_t cell = j * before.ranges.size() + i;
+    return double(before.layers[0].reverberation_db[cell]) -
+           double(now.layers[0].reverberation_db[cell]);
+  };
+  const PingSimulator simulator(scenario(straight));
+  const FilterOf filter(simulator.pulse());
+  for (const std::size_t i : {24U, 36U, 48U}) {
+    EXPECT_NEAR(lost(5.0, 9, i), 0.0, 0.3) << i;
+    // A line across the way looks ahead, and hears astern: that is shifted.
+    const double range = (double(i) + 0.5) * 200.0, delay = 2.0 * range / 1500.0;
+    const double one = range - (2200.0 * 2200.0 - 1800.0 * 1800.0) / (4.0 * range);
+    const double other = 2.0 * range - one, level = std::sqrt(one * one - 1800.0 * 1800.0);
+    const double turned = 2.0 * pi * speed * delay * (level / one - level / other);
+    const auto power = [&](double a, double b) {  // of a pair, by Lambert's law
+      return (a == one ? 1800.0 : 2200.0) * (b == one ? 1800.0 : 2200.0) / (a * a * b * b * a * b);
+    };
+    const double alone = power(one, one) + power(other, other), both = power(one, other);
+    const double passes = filter.passes(4.0 * speed * level / range, [](double) { return 1.0; });
+    const double truth =
+        db_from_power((alone + 4.0 * both) / (alone + 2.0 * both * (1.0 + std::cos(turned)))) -
+        db_from_power(0.5 * (1.0 + passes));
+    EXPECT_NEAR(lost(95.0, 0, i), truth, 0.6) << i;
   }
 }
 
