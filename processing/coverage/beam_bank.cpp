@@ -211,6 +211,7 @@ void BeamBank::look_along_axis(const PulseBand& band) {
   const auto steps =
       static_cast<std::size_t>(std::ceil(2.0 * dense * (2.0 + length * wavenumber / (2.0 * pi))));
   cosine_step_ = 2.0 / static_cast<double>(steps);
+  main_lobe_ = 2.0 * pi / (wavenumber * length);
   // At the centre, as far as the highest frequency asks for; then the mean over the band.
   std::vector<double> centre(static_cast<std::size_t>(highest * static_cast<double>(steps)) + 4);
   in_parallel(centre.size(), [&](std::size_t i) {
@@ -256,15 +257,16 @@ Vec3 BeamBank::slowness(double bearing, double elevation) const noexcept {
   return -direction(bearing, elevation) / sound_speed_;
 }
 
-void BeamBank::beam(double bearing, std::size_t node, std::span<float> received) const {
-  std::fill(received.begin(), received.end(), omnidirectional() ? 1.0F : 0.0F);
-  if (omnidirectional()) return;
-  const std::size_t nodes = nodes_.size();
+BeamBank::Beam BeamBank::beam(double bearing, std::size_t node) const {
+  const std::size_t nodes = nodes_.size(), sectors = static_cast<std::size_t>(sectors_);
+  Beam found{.all = std::vector<float>(sectors * nodes, omnidirectional() ? 1.0F : 0.0F),
+             .aside = std::vector<float>(sectors * nodes, 0.0F)};
+  if (omnidirectional()) return found;
   const auto parts = static_cast<std::size_t>(parts_);
   const Vec3 looks = direction(bearing, nodes_.elevation(node));
-  std::vector<float> rows(received.size() * parts, 1.0F);
+  std::vector<float> rows(sectors * parts * nodes, 1.0F);
+  const auto own = axis_ ? static_cast<float>(axis_->dot(looks)) : 0.0F;
   if (axis_) {
-    const auto own = static_cast<float>(axis_->dot(looks));
     const auto in_steps = static_cast<float>(1.0 / cosine_step_);
     for (std::size_t row = 0; row < rows.size(); ++row) {
       const float at = std::abs(cosines_[row] - own) * in_steps;
@@ -275,12 +277,21 @@ void BeamBank::beam(double bearing, std::size_t node, std::span<float> received)
   } else if (phones_.size() > 1) {
     receive_all_round(slowness(bearing, nodes_.elevation(node)), rows);
   }
+  constexpr float half = 0.5F;  // of other arrays the main lobe is what is louder
+  std::vector<float> beside(rows.size(), 0.0F);
+  for (std::size_t row = 0; row < rows.size(); ++row)
+    if (axis_ ? std::abs(cosines_[row] - own) > static_cast<float>(main_lobe_) : rows[row] < half)
+      beside[row] = rows[row];
   pass(looks, rows);
+  pass(looks, beside);
   const float share = 1.0F / static_cast<float>(parts_);
-  for (std::size_t sector = 0, row = 0; sector < received.size() / nodes; ++sector)
+  for (std::size_t sector = 0, row = 0; sector < sectors; ++sector)
     for (std::size_t part = 0; part < parts; ++part)
-      for (std::size_t k = 0; k < nodes; ++k, ++row)
-        received[sector * nodes + k] += share * rows[row];
+      for (std::size_t k = 0; k < nodes; ++k, ++row) {
+        found.all[sector * nodes + k] += share * rows[row];
+        found.aside[sector * nodes + k] += share * beside[row];
+      }
+  return found;
 }
 
 /// |w·e|² of an array that is no line.

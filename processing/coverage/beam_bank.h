@@ -51,9 +51,12 @@ class BeamBank {
   /// By how much sound from elsewhere may be answered early or late, for its shift and for the way
   /// along the phones [s].
   [[nodiscard]] double smear() const noexcept { return smear_; }
-  /// What a beam receives, relative to what it looks at. \param bearing  where it looks [rad]
-  /// \param node  of its elevation   \param received  [sectors × nodes]
-  void beam(double bearing, std::size_t node, std::span<float> received) const;
+  /// What a beam receives, relative to what it looks at, and what of that is beside its main lobe.
+  struct Beam {
+    std::vector<float> all, aside;  // [sectors × nodes]
+  };
+  /// \param bearing  where it looks [rad]   \param node  of its elevation
+  [[nodiscard]] Beam beam(double bearing, std::size_t node) const;
   /// gain_over_noise_db() of that beam.
   [[nodiscard]] double gain_over_noise_db(double bearing, std::size_t node) const;
 
@@ -77,7 +80,7 @@ class BeamBank {
   std::vector<float> real_, imaginary_;  // of e, [lines][phones][sectors × parts × nodes]
   // Of a line instead: |w·e|² over the difference of cosines, and those of all rows.
   std::optional<Vec3> axis_;
-  double cosine_step_ = 0.0;
+  double cosine_step_ = 0.0, main_lobe_ = 2.0;  // of a line: half its width in cosines
   std::vector<float> line_, cosines_;
   // Of a ship under way: Doppler shifts of all rows, and what passes over their difference.
   Vec2 closing_;

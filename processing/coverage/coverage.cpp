@@ -693,10 +693,8 @@ class Maker {
   /// One bearing: all its cells, by the elevation at which the beam looks.
   void look(std::size_t j, double noise_db, const ProbabilityTable& probability) {
     const auto ranges = static_cast<std::size_t>(settings_.ranges);
-    const std::size_t row = static_cast<std::size_t>(settings_.bearings) * nodes_.size();
-    std::vector<std::optional<std::vector<float>>> beams(nodes_.size());
+    std::vector<std::optional<BeamBank::Beam>> beams(nodes_.size());
     std::vector<double> gains(nodes_.size());
-    std::vector<float> sidelobe(nodes_.size());  // half of the most that a sector has
     for (std::size_t d = 0; d < made_.layers.size(); ++d) {
       CoverageLayer& layer = made_.layers[d];
       std::vector<double> aside(ranges, 0.0);
@@ -704,9 +702,7 @@ class Maker {
         if (layer.certainty[cell] == std::int8_t(CoverageCertainty::no_water)) continue;
         const std::size_t node = nodes_.nearest(double(elevation_[d][cell]));
         if (!beams[node]) {
-          beams[node].emplace(row);
-          beams_.beam(made_.bearings[j], node, *beams[node]);
-          sidelobe[node] = 0.5F * *std::max_element(beams[node]->begin(), beams[node]->end());
+          beams[node] = beams_.beam(made_.bearings[j], node);
           gains[node] = beams_.gain_over_noise_db(made_.bearings[j], node);
         }
         // Of a cell that nothing answers from: as if along a straight line.
@@ -717,9 +713,8 @@ class Maker {
         double reverberation = 0.0, sidelobes = 0.0;
         for (const std::vector<float>& density : density_)
           if (!density.empty()) {
-            const Received part = received(density, *beams[node], sidelobe[node], delay);
-            reverberation += part.all;
-            sidelobes += part.sidelobes;
+            reverberation += received(density, beams[node]->all, delay);
+            sidelobes += received(density, beams[node]->aside, delay);
           }
         if (reverberation > 0.0) aside[cell - j * ranges] = sidelobes / reverberation;
         const BeamLevels levels{
@@ -744,7 +739,11 @@ class Maker {
                         const std::vector<double>& aside) const {
     // Measured against pings: docs/theory/coverage.md.
     const double of_fans = paths_.layered() ? 0.5 : 1.0;
-    constexpr double of_sidelobes = 1.0, edge = 6.0;  // [dB]
+    constexpr double edge = 6.0;  // [dB]
+    // Lobes between nodes; and where sound comes by more than one path, two orders of a pair that
+    // two sidelobes may receive against one another: half of the power is not there.
+    const bool by_many = made_.followed.surface > 0 || made_.followed.bottom > 0;
+    const double of_sidelobes = by_many ? std::hypot(1.0, 3.0) : 1.0;
     const std::vector<float>& level = layer.reverberation_db;
     const auto ranges = static_cast<std::size_t>(settings_.ranges);
     // A level is blurred over bins of delay, and sound from elsewhere comes early or late.
@@ -774,12 +773,9 @@ class Maker {
     return -db_from_power(std::max(1e-3, band_.passes(shift)));
   }
 
-  /// Power in a beam, and what of it comes in where it answers less than `sidelobe`.
-  struct Received {
-    double all = 0.0, sidelobes = 0.0;
-  };
-  [[nodiscard]] Received received(const std::vector<float>& density, const std::vector<float>& beam,
-                                  float sidelobe, double delay) const {
+  /// Power in a beam at a delay.
+  [[nodiscard]] double received(const std::vector<float>& density, const std::vector<float>& beam,
+                                double delay) const {
     const double at =
         std::clamp(delay / axis_.step - 0.5, 0.0, static_cast<double>(axis_.bins) - 1.001);
     const auto bin = static_cast<std::size_t>(at);
@@ -787,23 +783,15 @@ class Maker {
     const float* const a = &density[bin * beam.size()];
     const float* const b = a + beam.size();
     constexpr std::size_t lanes = 8;  // summed beside one another: the compiler may not reorder
-    float sums[lanes] = {}, aside[lanes] = {};
+    float sums[lanes] = {};
     std::size_t i = 0;
     for (; i + lanes <= beam.size(); i += lanes)
-      for (std::size_t k = 0; k < lanes; ++k) {
-        const float power = a[i + k] + later * (b[i + k] - a[i + k]);
-        sums[k] += beam[i + k] * power;
-        aside[k] += (beam[i + k] < sidelobe ? beam[i + k] : 0.0F) * power;
-      }
-    Received found;
-    for (const float part : sums) found.all += double(part);
-    for (const float part : aside) found.sidelobes += double(part);
-    for (; i < beam.size(); ++i) {
-      const float power = beam[i] * (a[i] + later * (b[i] - a[i]));
-      found.all += double(power);
-      if (beam[i] < sidelobe) found.sidelobes += double(power);
-    }
-    return found;
+      for (std::size_t k = 0; k < lanes; ++k)
+        sums[k] += beam[i + k] * (a[i + k] + later * (b[i + k] - a[i + k]));
+    double sum = 0.0;
+    for (const float part : sums) sum += double(part);
+    for (; i < beam.size(); ++i) sum += double(beam[i] * (a[i] + later * (b[i] - a[i])));
+    return sum;
   }
 
   const PingSimulator& simulator_;

@@ -218,7 +218,7 @@ TEST(Coverage, ALongLineHearsTheBottomInItsSidelobes) {
         double(found.layers[0].reverberation_db[i]) - double(open.layers[0].reverberation_db[i]);
     // Two elevations in a lobe, straight between them: that is told.
     EXPECT_NEAR(gained, db_from_power(mean), 1.0) << found.ranges[i];
-    EXPECT_GT(double(found.layers[0].reverberation_uncertainty_db[i]), 1.0) << found.ranges[i];
+    EXPECT_GT(double(found.layers[0].reverberation_uncertainty_db[i]), 0.75) << found.ranges[i];
     most = std::max(most, db_from_power(mean / at_centre));
   }
   EXPECT_GT(most, 4.0);  // the beam at the centre alone must fail
