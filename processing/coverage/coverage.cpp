@@ -395,11 +395,14 @@ class Maker {
         density_[k].assign(axis_.bins * row, 0.0F);
     std::atomic<std::size_t> done = 0;
     const bool symmetric = paths_.layered() && apart() < 1e-3 && pattern_.azimuthally_symmetric();
-    // Of a sea that is the same all round one bearing tells them all: its echoes, and what comes
-    // back to an array to which paths are in phase from all bearings alike.
-    const bool same = symmetric && receiving_phones().alike_all_round();
-    const std::size_t walked = same ? 1 : bearings;
-    in_parallel(walked, [&](std::size_t j) {
+    // Of a sea that is the same all round one bearing tells all echoes, and what comes back to an
+    // array to which paths are in phase from all bearings alike. Else some bearings tell that.
+    const std::size_t stride = !symmetric                             ? 1
+                               : receiving_phones().alike_all_round() ? bearings
+                                                                      : between_bearings(bearings);
+    const std::size_t walked = (bearings + stride - 1) / stride;
+    in_parallel(walked, [&](std::size_t number) {
+      const std::size_t j = number * stride;
       const Ends fans = fans_at(made_.bearings[j]);
       EchoMeans means(frequency(), *coherence_, pulse_.bandwidth_99());
       for (std::size_t depth = 0; depth < settings_.depths.size() && (j == 0 || !symmetric);
@@ -411,7 +414,7 @@ class Maker {
       const double from = all_round_.empty() ? 0.0 : planes_share;
       tell(std::lerp(from, 0.7, static_cast<double>(++done) / static_cast<double>(walked)));
     });
-    if (symmetric) spread_first_bearing(same);
+    if (symmetric) spread_bearings(stride);
     for (std::size_t j = 0; j < bearings; ++j)
       for (int i = 0; i < settings_.ranges; ++i)
         made_.bottom_depth[j * static_cast<std::size_t>(settings_.ranges) +
@@ -425,8 +428,14 @@ class Maker {
            Vec3(r * std::sin(made_.bearings[bearing]), r * std::cos(made_.bearings[bearing]), 0.0);
   }
 
-  /// What the first bearing has found holds for the others. \param reverberation  that, too
-  void spread_first_bearing(bool reverberation) {
+  /// Phases of what comes back by two ways turn with the cosine of the bearing.
+  static std::size_t between_bearings(std::size_t bearings) {
+    constexpr std::size_t enough = 48;
+    return std::max<std::size_t>(1, bearings / enough);
+  }
+
+  /// Echoes of the first bearing hold for all; reverberation lies between that of each `stride`th.
+  void spread_bearings(std::size_t stride) {
     const auto ranges = static_cast<std::size_t>(settings_.ranges);
     const auto bearings = static_cast<std::size_t>(settings_.bearings);
     const auto spread = [&](auto& values) {
@@ -442,12 +451,20 @@ class Maker {
       spread(layer.certainty);
       spread(elevation_[d]);
     }
-    if (!reverberation) return;
+    const std::size_t nodes = nodes_.size(), row = bearings * nodes;
     for (std::vector<float>& density : density_)
-      for (std::size_t row = 0; row < density.size(); row += bearings * nodes_.size())
-        for (std::size_t j = 1; j < bearings; ++j)
-          std::copy_n(density.begin() + static_cast<std::ptrdiff_t>(row), nodes_.size(),
-                      density.begin() + static_cast<std::ptrdiff_t>(row + j * nodes_.size()));
+      in_parallel(density.size() / row, [&](std::size_t bin) {
+        float* const all = &density[bin * row];
+        for (std::size_t j = 0; j < bearings; ++j) {
+          const std::size_t from = j / stride * stride;
+          if (from == j) continue;
+          const std::size_t to = std::min(from + stride, bearings);
+          const float share = static_cast<float>(j - from) / static_cast<float>(to - from);
+          const float* const a = &all[from * nodes];
+          const float* const b = &all[to % bearings * nodes];
+          for (std::size_t e = 0; e < nodes; ++e) all[j * nodes + e] = a[e] + share * (b[e] - a[e]);
+        }
+      });
   }
 
   /// The paths of a cell of a fan as legs of an echo.
@@ -677,8 +694,26 @@ class Maker {
     density = std::move(received);
   }
 
+  /// Surface, bottom and volume into the first of them that is there.
+  void add_up_kinds() {
+    std::vector<float>* first = nullptr;
+    for (std::vector<float>& density : density_) {
+      if (density.empty()) continue;
+      if (first == nullptr) {
+        first = &density;
+        continue;
+      }
+      const std::size_t row = density.size() / axis_.bins;
+      in_parallel(axis_.bins, [&](std::size_t bin) {
+        for (std::size_t i = bin * row; i < (bin + 1) * row; ++i) (*first)[i] += density[i];
+      });
+      density = {};
+    }
+  }
+
   void look_through_beams() {
     const std::vector<float> weights = filter_weights(pulse_, axis_.step, cell_delay());
+    add_up_kinds();
     for (std::vector<float>& density : density_) receive_pulse(density, weights);
     const ProbabilityTable probability(settings_.false_alarm_probability, settings_.reference_cells,
                                        fluctuation_shape(settings_.fluctuation));
@@ -713,8 +748,9 @@ class Maker {
         double reverberation = 0.0, sidelobes = 0.0;
         for (const std::vector<float>& density : density_)
           if (!density.empty()) {
-            reverberation += received(density, beams[node]->all, delay);
-            sidelobes += received(density, beams[node]->aside, delay);
+            const Received part = received(density, *beams[node], delay);
+            reverberation += part.all;
+            sidelobes += part.aside;
           }
         if (reverberation > 0.0) aside[cell - j * ranges] = sidelobes / reverberation;
         const BeamLevels levels{
@@ -773,25 +809,41 @@ class Maker {
     return -db_from_power(std::max(1e-3, band_.passes(shift)));
   }
 
-  /// Power in a beam at a delay.
-  [[nodiscard]] double received(const std::vector<float>& density, const std::vector<float>& beam,
-                                double delay) const {
+  /// Power in a beam at a delay, and beside its main lobe.
+  struct Received {
+    double all = 0.0, aside = 0.0;
+  };
+  [[nodiscard]] Received received(const std::vector<float>& density, const BeamBank::Beam& beam,
+                                  double delay) const {
     const double at =
         std::clamp(delay / axis_.step - 0.5, 0.0, static_cast<double>(axis_.bins) - 1.001);
     const auto bin = static_cast<std::size_t>(at);
     const auto later = static_cast<float>(at - static_cast<double>(bin));
-    const float* const a = &density[bin * beam.size()];
-    const float* const b = a + beam.size();
+    const std::size_t size = beam.all.size();
+    const float* const a = &density[bin * size];
+    const float* const b = a + size;
+    const float* const all = beam.all.data();
+    const float* const aside = beam.aside.data();
     constexpr std::size_t lanes = 8;  // summed beside one another: the compiler may not reorder
-    float sums[lanes] = {};
+    float sums[lanes] = {}, others[lanes] = {};
     std::size_t i = 0;
-    for (; i + lanes <= beam.size(); i += lanes)
-      for (std::size_t k = 0; k < lanes; ++k)
-        sums[k] += beam[i + k] * (a[i + k] + later * (b[i + k] - a[i + k]));
-    double sum = 0.0;
-    for (const float part : sums) sum += double(part);
-    for (; i < beam.size(); ++i) sum += double(beam[i] * (a[i] + later * (b[i] - a[i])));
-    return sum;
+    for (; i + lanes <= size; i += lanes)
+      for (std::size_t k = 0; k < lanes; ++k) {
+        const float power = a[i + k] + later * (b[i + k] - a[i + k]);
+        sums[k] += all[i + k] * power;
+        others[k] += aside[i + k] * power;
+      }
+    Received found;
+    for (std::size_t k = 0; k < lanes; ++k) {
+      found.all += double(sums[k]);
+      found.aside += double(others[k]);
+    }
+    for (; i < size; ++i) {
+      const float power = a[i] + later * (b[i] - a[i]);
+      found.all += double(all[i] * power);
+      found.aside += double(aside[i] * power);
+    }
+    return found;
   }
 
   const PingSimulator& simulator_;

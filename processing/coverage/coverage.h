@@ -45,7 +45,7 @@ struct CoverageLayer {
   std::vector<float> signal_excess_db;  ///< by signal_excess_db()
   std::vector<float> detection_probability;
   std::vector<float> uncertainty_db;  ///< of the echo level, one standard deviation; ∞: no ray
-  std::vector<float> reverberation_uncertainty_db;  ///< the same of its level, over the cell
+  std::vector<float> reverberation_uncertainty_db;  ///< the same of its level
   std::vector<std::int8_t> certainty;               ///< CoverageCertainty
 };
 
@@ -75,8 +75,8 @@ struct Coverage {
 /// at whatever scatters; one plane serves all bearings of a layered ocean. Echo: the mean over the
 /// cell of |Σ_pairs A_out·D·A_back·R(τ)|² at the delay at which it is greatest, R the pulse's
 /// autocorrelation. Reverberation: that of all bearings through the beam that looks at the echo.
-/// Everything stands still where it is when the ping is sent. docs/theory/coverage.md
-/// \throws InputError naming the setting at fault
+/// Everything is where it is when the ping is sent; Doppler shifts are those of what rests.
+/// docs/theory/coverage.md \throws InputError naming the setting at fault
 [[nodiscard]] Coverage coverage(const PingSimulator& simulator, const CoverageSettings& settings,
                                 const Progress& progress = {});
 
