@@ -272,8 +272,8 @@ class Maker {
     tell_of(!scenario_.interferers.empty(),
             "interferer: the noise of ships is not in the picture of the area");
     tell_of(pulse_.duration() * pulse_.bandwidth_99() < 10.0 && !parts_.empty(),
-            "pulse: the picture of the area is that of targets at rest; one that moves stands out "
-            "better from reverberation");
+            "pulse: the picture of the area is that of targets and scatterers at rest; a target "
+            "that moves stands out better from reverberation");
     tell_of(!paths_.layered(),
             "environment: over slopes and fronts the picture of the area is right as a mean over "
             "cells; a cell by itself may be off by its uncertainty_db");
