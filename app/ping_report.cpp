@@ -54,6 +54,7 @@ void PingReport::add(const PingRecord& record) {
   band_error_ = std::max(band_error_, record.band.error);
   plane_wave_error_ = std::max(plane_wave_error_, record.plane_waves.error);
   bounces_.include(record.bounces);
+  sea_drawn_anew_ = sea_drawn_anew_ || record.sea_drawn_anew;
   reuse_.planes_searched += record.reuse.planes_searched;
   reuse_.planes_reused += record.reuse.planes_reused;
   reuse_.legs_searched += record.reuse.legs_searched;
@@ -82,6 +83,10 @@ std::string PingReport::text(double wall) const {
         "for too many returns; propagation.exact_per_phone = true gives every phone its own "
         "paths\n",
         plane_wave_error_);
+  if (sea_drawn_anew_)
+    result +=
+        "note: a frozen sea is drawn anew for every ping: under way each ping receives other sums "
+        "of its scatterers, and they are too many for reverberation.most_returns\n";
   if (bounces_.left_out_db > tolerable_db)
     result += fmt::format(
         "note: paths of more than {} bounces are left out, up to {:.2g} dB of the level\n",

@@ -134,9 +134,9 @@ def main():
         run("asdic area, 360 bearings, 500 ranges to 40 km", folder, "area", "ship.toml", "--depth", "150",
             "--reach", "40km", "--ranges", "500", "--bearings", "360", "-o", "area.h5", "-q")
         for count in (1, 2):
-            for frozen in ("false", "true"):
-                said = run(f"asdic ping, pings: {count}, frozen: {frozen}", folder, "ping", "ship.toml", "--set",
-                           f"pings.count={count}", "--set", f"reverberation.bottom.frozen={frozen}", "-o", "ping.h5")
+            for way in ("automatic", "scatterers"):
+                said = run(f"asdic ping, pings: {count}, synthesis: {way}", folder, "ping", "ship.toml", "--set",
+                           f"pings.count={count}", "--set", f"reverberation.synthesis={way}", "-o", "ping.h5")
                 print("   ", next(line for line in said.splitlines() if line.startswith("after preparing:")))
 
 

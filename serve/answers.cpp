@@ -131,6 +131,7 @@ std::string ping_line(const ServedPing& served, const PingRecord& record,
   line["timings"] = timings(record.timings, served.prepare);
   add_warnings(scenario, line);
   add_left_out(record.bounces, scenario, line);
+  if (record.sea_drawn_anew) line["sea_drawn_anew"] = true;
   line["latency"] = served.latency;
   line["behind"] = served.behind;
   return text(line);

@@ -32,6 +32,9 @@ struct ScatteringField {
   int bearings = 36;                ///< that its covariance looks at, at least
   double divided_below = infinity;  ///< cells beyond this range from the anchor are whole [m]
   Bounces bounces = {};             ///< that were followed
+  /// Every ping draws it anew although its weights last: they are too many to be received one by
+  /// one, and the platform leaves their sums behind.
+  bool drawn_anew = false;
   double share = 1.0;  ///< of its pressure that is received; the rest is of other anchors' fields
 
   [[nodiscard]] double ring_area(std::uint32_t ring) const noexcept;  ///< [m²]

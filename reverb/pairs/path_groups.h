@@ -54,6 +54,9 @@ class GroupedPaths {
   /// \param frequency  [Hz]
   GroupedPaths(const FanPlane& plane, const PathResolution& resolution, double frequency);
 
+  [[nodiscard]] std::size_t cells() const noexcept {
+    return first_.empty() ? 0 : first_.size() - 1;
+  }
   [[nodiscard]] std::span<const PathGroup> groups(std::size_t cell) const noexcept {
     return {groups_.data() + first_[cell], first_[cell + 1] - first_[cell]};
   }

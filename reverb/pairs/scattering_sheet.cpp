@@ -349,9 +349,13 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
     const double there = delay_beyond(a, out.beyond) + a_ends.down * below;
     const double sent_power = std::norm(sent[0]);
     // Most pairs are too faint whenever they are received, and need not be known closer.
-    const bool in_a_glance =
-        limits && points == 0 &&
-        most_shift(back, std::max(received, there + longest)) < 0.99 * limits->segment;
+    constexpr double far = 32.0;  // segments: beyond, to look is as long as to know
+    const double shift =
+        limits && points == 0
+            ? most_shift(back, std::max(received, there + longest)) / (0.99 * limits->segment)
+            : infinity;
+    const bool in_a_glance = shift < far;
+    const auto segments = in_a_glance ? static_cast<std::size_t>(shift) + 1 : 0;
     for (std::size_t n = 0; n < backs; ++n) {
       // Pairs within a bundle are those of two draws: that of a group with itself is one of many.
       const TakenGroup& other = pairs.back_taken_[n];
@@ -359,7 +363,7 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
       const bool one_bundle = of_many && one_cell && first.bundle == other.bundle;
       if (in_a_glance && !one_bundle &&
           sent_power * pairs.power_home_[n] * ring * strongest <=
-              limits->about(there + pairs.way_home_[n]))
+              limits->about(there + pairs.way_home_[n], segments))
         continue;
       const std::complex<double>* home = &pairs.home_[n * (1 + points)];
       TakenGroup second = other;

@@ -109,11 +109,12 @@ struct AudibleLimits {
     const auto i = static_cast<std::size_t>(std::max(0.0, delay) / segment);
     return i < least.size() ? least[i] : 0.0;
   }
-  /// No more than at() of any delay less than a segment away.
-  [[nodiscard]] double about(double delay) const noexcept {
+  /// No more than at() of any delay less than `segments` segments away.
+  [[nodiscard]] double about(double delay, std::size_t segments) const noexcept {
     const auto i = static_cast<std::size_t>(std::max(0.0, delay) / segment);
-    if (i + 1 >= least.size()) return 0.0;
-    return std::min({least[i > 0 ? i - 1 : 0], least[i], least[i + 1]});
+    if (i + segments >= least.size()) return 0.0;
+    const auto at = [&](std::size_t k) { return least.begin() + static_cast<std::ptrdiff_t>(k); };
+    return *std::min_element(at(i > segments ? i - segments : 0), at(i + segments + 1));
   }
 };
 

@@ -372,6 +372,7 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
         emission, array, record, drawn ? std::span<const Vec3>(around) : std::span<const Vec3>(),
         points, budget, plane));
     record.bounces.include(scattered.back().bounces());
+    record.sea_drawn_anew = record.sea_drawn_anew || scattered.back().drawn_anew();
     record.timings.rays += watch.lap();
     if (a == 0) record.patches = scattered.back().rows(most_patch_rows, &paths_->memory()).rows;
     record.timings.patches += watch.lap();

@@ -75,6 +75,8 @@ struct PingRecord {
   Reuse reuse;
   BandFit band;
   PlaneWaveFit plane_waves;
+  /// Scatterers with weights that last are drawn anew (ScatteringField::drawn_anew).
+  bool sea_drawn_anew = false;
   Bounces bounces;  ///< that were followed, the most of echoes, blast and reverberation
 
   /// For noise and ships, which are added to it.

@@ -61,6 +61,11 @@ Bounces PingReverberation::bounces() const {
   return all;
 }
 
+bool PingReverberation::drawn_anew() const noexcept {
+  return std::any_of(fields_.begin(), fields_.end(),
+                     [](const ScatteringField& field) { return field.drawn_anew; });
+}
+
 std::vector<DopplerSpan> PingReverberation::dopplers() const {
   std::vector<DopplerSpan> spans;
   for (const ScatteringField& field : fields_)

@@ -52,6 +52,8 @@ class PingReverberation final : public ReturnSource {
   [[nodiscard]] const ReverberationStreams* streams() const noexcept { return streams_.get(); }
   /// That were followed, the most of all fields.
   [[nodiscard]] Bounces bounces() const;
+  /// Whether any is drawn anew although its weights last (ScatteringField::drawn_anew).
+  [[nodiscard]] bool drawn_anew() const noexcept;
   /// How many plain_returns() are, more or less.
   [[nodiscard]] double expected_returns() const noexcept { return expected_->returns; }
   /// How many of them are gridded one by one; none where sectors, a covariance or streams

@@ -92,6 +92,26 @@ Resolutions resolutions(const ReverberationContext& context, const SheetEnds& en
   return found;
 }
 
+/// Pairs of paths to the scatterers of a grid all round, audible or not.
+/// \param scatterers  per metre of range, all round
+double pairs_of_paths(const BoundaryFan& fan, const FanGroups& out, const FanGroups& back,
+                      double scatterers) {
+  const auto followed = [](const FanGroups& groups, std::size_t plane, std::size_t cell) {
+    const GroupedPaths& of = groups.planes[std::min(plane, groups.planes.size() - 1)];
+    if (cell >= of.cells()) return 0.0;
+    const std::size_t bundles = of.bundles(cell).size();
+    return static_cast<double>(bundles > 0 ? bundles : of.groups(cell).size());
+  };
+  double pairs = 0.0;
+  for (std::size_t plane = 0; plane < fan.planes.size(); ++plane) {
+    const BoundaryPaths& paths = *fan.planes[plane].paths;
+    for (std::size_t cell = 0; cell + 1 < paths.cells(); ++cell)
+      pairs += (paths.range(cell + 1) - paths.range(cell)) * followed(out, plane, cell) *
+               followed(back, plane, cell);
+  }
+  return scatterers * pairs / static_cast<double>(std::max<std::size_t>(1, fan.planes.size()));
+}
+
 }  // namespace
 
 double speed_at_surface(const Scenario& scenario, const PropagationPaths& paths) {
@@ -158,6 +178,13 @@ bool ReverberationFields::seas_compared(const ScattererField& field) const {
                      });
 }
 
+bool ReverberationFields::left_behind(const ReverberationContext& context, const Vec2& middle,
+                                      const Vec2& next) const {
+  const ReverberationSettings& settings = scenario_.reverberation;
+  return settings.synthesis == ScattererSynthesis::automatic && scenario_.arrays.size() == 1 &&
+         context.band.empty() && (next - middle).norm() > spacing_;
+}
+
 double ReverberationFields::wide_cells(const Pulse& pulse, Ground ground,
                                        double reach) const noexcept {
   // Over an area no facet is narrower.
@@ -182,6 +209,7 @@ void ReverberationFields::meet(ScatteringPart part, const ReverberationContext& 
   const ScattererField& field = part.field;
   SheetEnds ends = ends_of(context);
 
+  const bool lasts = field.statistics.coherence_time > 0.0;
   // Around points next to the middle of the two platforms, on a lattice through that of the first
   // two: pairs whose middles are near each other receive one sea.
   const auto middle = [&](int transmitter, int array, double time) -> Vec2 {
@@ -261,6 +289,22 @@ void ReverberationFields::meet(ScatteringPart part, const ReverberationContext& 
   const ScatteringSheet::Groups groups{
       .out = FanGroups::of(*out, alike.out, ends.frequency, memory),
       .back = FanGroups::of(*back, alike.back, ends.frequency, memory)};
+  // Of so many even the audible are more than are received one by one, and sectors know delays, not
+  // places: who has gone on receives other sums of the same scatterers, as good as drawn anew.
+  constexpr double inaudible = 4.0;
+  const int transmitter = context.geometry.sent().transmitter;
+  const double interval =
+      context.geometry.transmitter().interval.value_or(scenario_.pings.interval);
+  if (const double time = context.geometry.time();
+      lasts && ground == Ground::means && !field.statistics.k_shape &&
+      left_behind(context, middle(transmitter, context.array, time),
+                  middle(transmitter, context.array, time + interval)) &&
+      pairs_of_paths(*out, *groups.out, *groups.back,
+                     static_cast<double>(sectors(reach)) * settings.scatterers_per_cell /
+                         spacing_) > inaudible * static_cast<double>(settings.most_returns)) {
+    meet_anew(std::move(part), context, ground, fields);
+    return;
+  }
   // For parts of an array that of all its phones: they are to receive the same scatterers.
   const auto farthest_phone = [&](const Vec2& place) {
     if (!context.point) return (receiver - place).norm();
@@ -295,6 +339,14 @@ void ReverberationFields::meet(ScatteringPart part, const ReverberationContext& 
   }
 }
 
+void ReverberationFields::meet_anew(ScatteringPart part, const ReverberationContext& context,
+                                    Ground ground, std::vector<ScatteringField>& fields) const {
+  part.field.statistics.coherence_time = 0.0;
+  const std::size_t first = fields.size();
+  meet(std::move(part), context, ground, fields);
+  for (std::size_t i = first; i < fields.size(); ++i) fields[i].drawn_anew = true;
+}
+
 std::vector<ScatteringField> ReverberationFields::of(const ReverberationContext& context,
                                                      Ground ground) const {
   std::vector<ScatteringField> found;
@@ -310,7 +362,16 @@ std::vector<ScatteringField> ReverberationFields::in_detail(
   if (context.level_alone || std::none_of(received.begin(), received.end(), one_by_one) ||
       !paths_.layered() || !(wide_cells(context.pulse) > spacing_))
     return received;
-  std::vector<ScatteringField> fine = of(context, Ground::scatterers), all;
+  std::vector<ScatteringField> fine, all;
+  for (ScatteringPart& part : parts()) {
+    const bool anew = std::any_of(received.begin(), received.end(), [&](const auto& field) {
+      return field.boundary == part.id && field.drawn_anew;
+    });
+    if (anew)
+      meet_anew(std::move(part), context, Ground::scatterers, fine);
+    else
+      meet(std::move(part), context, Ground::scatterers, fine);
+  }
   for (std::size_t i = 0; i < received.size(); ++i)
     all.push_back(std::move(one_by_one(received[i]) ? fine[i] : received[i]));
   return all;

@@ -53,6 +53,13 @@ class ReverberationFields {
   /// Whether it can be received that pairs of ends with other anchors receive other seas: of
   /// weights that outlast a ping, or if one ping is received from several platforms.
   [[nodiscard]] bool seas_compared(const ScattererField& field) const;
+  /// The same, as one of which every ping draws its own.
+  void meet_anew(ScatteringPart part, const ReverberationContext& context, Ground ground,
+                 std::vector<ScatteringField>& fields) const;
+  /// Whether the next ping receives other sums of the same scatterers, and streams could stand for
+  /// them. \param middle, next  of source and receiver, at this ping and the next
+  [[nodiscard]] bool left_behind(const ReverberationContext& context, const Vec2& middle,
+                                 const Vec2& next) const;
   /// Of a ring: as many as are resolved, but no more scatterers in all rings than twice the most
   /// returns, and no fewer sectors than the scenario says. \param reach  of the rings [m]
   [[nodiscard]] int sectors(double reach) const;

@@ -433,6 +433,40 @@ TEST(ReverberationStreams, AFrozenSeaThatIsReceivedOnceIsAFreshOne) {
   EXPECT_EQ(received(frozen, true), received(frozen, false));
 }
 
+// A frozen sea of too many scatterers for one by one, of which a sonar that goes on receives other
+// sums with every ping, is a fresh one too, and says so. One that lies still keeps its weights, and
+// so does a sea of few, one with a texture and one that several arrays compare.
+TEST(ReverberationStreams, AFrozenSeaOfTooManyIsDrawnAnewUnderWay) {
+  Scenario frozen = under_way();
+  frozen.pings.recording_duration = 3.0;
+  frozen.reverberation.most_returns = 1000;
+  frozen.reverberation.azimuths = 144;
+  frozen.reverberation.synthesis = ScattererSynthesis::automatic;
+  Scenario fresh = frozen;
+  frozen.reverberation.surface_field.statistics.coherence_time = infinity;
+  const auto ping = [](const Scenario& s) { return PingSimulator(s).simulate(1); };
+  const PingRecord anew = ping(frozen), drawn = ping(fresh);
+  EXPECT_TRUE(anew.sea_drawn_anew);
+  EXPECT_EQ(anew.pressure, drawn.pressure);
+  EXPECT_FALSE(drawn.sea_drawn_anew);
+  const auto keeps = [&](auto&& change) {
+    Scenario s = frozen;
+    change(s);
+    const PingRecord kept = ping(s);
+    return !kept.sea_drawn_anew && kept.pressure != drawn.pressure;
+  };
+  EXPECT_TRUE(keeps([](Scenario& s) { s.platforms[0].track.start.velocity.setZero(); }));
+  EXPECT_TRUE(keeps([](Scenario& s) { s.pings.interval = 0.01; }));
+  EXPECT_TRUE(keeps([](Scenario& s) { s.reverberation.most_returns = 100'000'000; }));
+  EXPECT_TRUE(keeps([](Scenario& s) { s.reverberation.surface_field.statistics.k_shape = 1.0; }));
+  EXPECT_TRUE(keeps([](Scenario& s) { s.arrays.push_back(s.arrays[0]); }));
+  EXPECT_TRUE(
+      keeps([](Scenario& s) { s.reverberation.synthesis = ScattererSynthesis::scatterers; }));
+  Scenario often = frozen;
+  often.transmitters[0].interval = 0.01;
+  EXPECT_FALSE(ping(often).sea_drawn_anew);
+}
+
 // Blocks of delays that were over before the record begins are not in it, and take nothing: 60
 // pings of 6 times and 2 phones, whose mean is known to 4.9 sigma = 26 %.
 TEST(ReverberationStreams, ARecordMayBeginLate) {
