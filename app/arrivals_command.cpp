@@ -130,6 +130,7 @@ int arrivals(const ArrivalsOptions& options) {
       .receiver_depth = options.receiver_depth.value_or(0.0),
       .legs = free ? std::vector{to_receiver(simulator, options)} : to_targets(simulator, options)};
   result.source_depth = options.source_depth.value_or(source.z());
+  result.earth = EarthPlaces(scenario.origin, scenario.area.get());
   for (const Target& target : scenario.targets) result.targets.push_back(target.name);
   if (!options.output.empty())
     write_arrivals_file(

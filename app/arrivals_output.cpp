@@ -182,6 +182,11 @@ std::string arrivals_json(const ArrivalsResult& result) {
       one["leg"] = "receiver";
     }
     one["range"] = leg.range;
+    if (const GeographicPlace end = result.earth.at(leg.end.x(), leg.end.y());
+        !std::isnan(end.latitude)) {
+      one["latitude"] = end.latitude;
+      one["longitude"] = end.longitude;
+    }
     one["arrivals"] = json_of(leg.arrivals);
     legs.push_back(one);
   }
@@ -205,7 +210,7 @@ void write_arrivals_file(OutputFile&& to, const ArrivalsResult& result) {
     file.set_attribute("", "receiver_depth_m", result.receiver_depth);
   }
 
-  ArrivalTable arrivals(file);
+  ArrivalTable arrivals(file, result.earth);
   for (Leg leg : result.legs) {
     if (result.to_receiver) {
       leg.kind = Leg::Kind::source_to_receiver;

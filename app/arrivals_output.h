@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "app/output.h"
+#include "raytrace/area/earth_places.h"
 #include "sonar/ping/ping_record.h"
 
 namespace asdic::detail::app {
@@ -17,6 +18,7 @@ struct ArrivalsResult {
   bool to_receiver = false;                         ///< one leg, from a source to a free receiver
   double source_depth = 0.0, receiver_depth = 0.0;  ///< of that leg [m]
   std::vector<Leg> legs;
+  EarthPlaces earth{};  ///< where their map is
 };
 
 [[nodiscard]] std::string arrivals_table(const ArrivalsResult& result);

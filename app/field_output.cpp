@@ -62,7 +62,8 @@ FieldData field_data(const PropagationCase& run_case, PropagationResult&& result
           .beam_error_db = result.beam_error_db,
           .beam_error_bounded = result.beam_error_bounded,
           .beam_errors = std::move(result.beam_errors),
-          .solver = std::string(word_of(result.waves ? FieldSolver::waves : FieldSolver::beams))};
+          .solver = std::string(word_of(result.waves ? FieldSolver::waves : FieldSolver::beams)),
+          .earth = EarthLine(run_case)};
 }
 
 void write_field_file(OutputFile&& to, const FieldResult& result) {
@@ -72,8 +73,9 @@ void write_field_file(OutputFile&& to, const FieldResult& result) {
   write_field(file, result.data);
   const auto& ranges = result.run_case.receivers.ranges;
   const auto [first, last] = std::minmax_element(ranges.begin(), ranges.end());
-  write_environment_group(file, plane_of(result.run_case), std::min(0.0, *first),
-                          std::max(0.0, *last));
+  const double furthest = std::max(0.0, *last);
+  write_environment_group(file, plane_of(result.run_case), std::min(0.0, *first), furthest,
+                          reach_on_map(result.run_case, furthest));
   output.finish();
 }
 

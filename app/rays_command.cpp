@@ -73,15 +73,20 @@ std::vector<double> elevations(const RaysOptions& options, const BeamSettings& f
   return all;
 }
 
-/// The vertical plane through the platform of a sonar scenario along a bearing [deg].
-Environment plane_along(const RaysOptions& options, double bearing) {
+/// Turns a run into the vertical plane through the platform of a sonar scenario along a bearing
+/// [deg].
+void turn(PropagationCase& run_case, const RaysOptions& options, double bearing) {
   if (!has_sonar(options.scenario.path, options.scenario.overrides))
     throw InputError({.where = "--bearing",
                       .got = fmt::format("{} deg and a run without a platform", bearing),
                       .expected = "a sonar scenario, whose platform is somewhere on the map"});
   const Scenario scenario = read_scenario(options.scenario.path, options.scenario.overrides);
   const Vec3 platform = scenario.platforms[0].track.at(0.0).position;
-  return ocean_on_map(scenario).plane(platform.head<2>(), radians(bearing), reach_of_area);
+  run_case.environment =
+      ocean_on_map(scenario).plane(platform.head<2>(), radians(bearing), reach_of_area);
+  run_case.off_transect = 0.0;
+  run_case.on_map = {.x = platform.x(), .y = platform.y(), .bearing = radians(bearing)};
+  if (run_case.on_area) run_case.on_area->bearing = radians(bearing);
 }
 
 /// The ocean and the source out of a sonar scenario, or one of an ocean and a run.
@@ -99,7 +104,7 @@ RaysResult read(const RaysOptions& options, bool as_run) {
                    .overrides = options.scenario.overrides,
                    .warnings = notes,
                    .origin = result.run_case.origin};
-  if (options.bearing) result.run_case.environment = plane_along(options, *options.bearing);
+  if (options.bearing) turn(result.run_case, options, *options.bearing);
   std::vector<double>& sources = result.run_case.source_depths;
   if (options.depth)
     sources = {*options.depth};
@@ -159,10 +164,11 @@ RaysResult trace(const RaysOptions& options) {
     result.rays_of_source = run_of(run_case, options);
     return result;
   }
+  const Environment plane = plane_of(run_case);
   for (const double depth : run_case.source_depths) {
     std::vector<RayPath>& rays = result.rays_of_source.emplace_back();
     for (const double elevation : fan)
-      rays.push_back(trace_ray(run_case.environment, depth, elevation, run_case.box_range, 50.0,
+      rays.push_back(trace_ray(plane, depth, elevation, run_case.box_range, 50.0,
                                options.bounces.value_or(usual_bounces)));
   }
   return result;

@@ -11,6 +11,7 @@
 #include "app/console.h"
 #include "core/units.h"
 #include "io/bellhop/results.h"
+#include "io/hdf5/earth.h"
 #include "io/hdf5/environment_group.h"
 #include "io/ping/growing_table.h"
 
@@ -100,10 +101,15 @@ std::string rays_table(const RaysResult& result) {
 }
 
 std::string rays_json(const RaysResult& result) {
+  const EarthLine earth(result.run_case);
   ordered_json list = ordered_json::array();
   for (const RayPath& ray : result.rays()) {
-    ordered_json range = ordered_json::array(), depth = range, time = range;
+    ordered_json range = ordered_json::array(), depth = range, time = range, latitude = range,
+                 longitude = range;
     for (const RayPoint& point : ray.points) {
+      const GeographicPlace there = earth.at(point.range);
+      latitude.push_back(there.latitude);
+      longitude.push_back(there.longitude);
       range.push_back(point.range);
       depth.push_back(point.depth);
       time.push_back(point.time);
@@ -119,6 +125,9 @@ std::string rays_json(const RaysResult& result) {
                     {"range", range},
                     {"depth", depth},
                     {"time", time}});
+    if (!earth.known()) continue;
+    list.back()["latitude"] = latitude;
+    list.back()["longitude"] = longitude;
   }
   const ordered_json all = {{"filetype", "asdic rays"},
                             {"version", "1.0"},
@@ -151,7 +160,8 @@ void write_rays_file(OutputFile&& to, const RaysResult& result) {
   file.set_attribute("", "frequency_hz", header.frequency);
   file.set_attribute("", "surface_depth_m", header.surface_depth);
   file.set_attribute("", "bottom_depth_m", header.bottom_depth);
-  write_environment_group(file, result.run_case.environment, least_range, greatest_range);
+  write_environment_group(file, plane_of(result.run_case), least_range, greatest_range,
+                          reach_on_map(result.run_case, greatest_range));
 
   RaysGroup group(file, result.rays());
   group.column<double>(
@@ -197,6 +207,11 @@ void write_rays_file(OutputFile&& to, const RaysResult& result) {
       "surface_hit", "hit", hits, [](const RayPath& r) { return r.surface_hits.size(); },
       [](const RayPath& r, std::size_t i) { return r.surface_hits[i]; },
       "ranges where the ray meets the surface", "m");
+  const EarthLine earth(result.run_case);
+  write_on_earth(file, earth, "rays/", "of the point", file.read<double>("rays/range"),
+                 {result.rays().size(), points}, {"rays/ray", "rays/point"});
+  for (const char* name : {"range", "depth", "time"})
+    place_on_earth(file, earth.known(), std::string("rays/") + name);
   output.finish();
 }
 

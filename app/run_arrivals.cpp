@@ -80,12 +80,17 @@ std::string run_arrivals_table(const RunArrivals& all) {
 std::string run_arrivals_json(const RunArrivals& all) {
   using nlohmann::ordered_json;
   ordered_json legs = ordered_json::array();
+  const EarthLine earth(all.run_case);
   each_receiver(all, [&](double source, double depth, double range, const Arrivals& arrivals) {
-    legs.push_back({{"leg", "receiver"},
-                    {"source_depth", source},
-                    {"receiver_depth", depth},
-                    {"range", range},
-                    {"arrivals", ordered_json::parse(paths_json(arrivals))}});
+    ordered_json one = {
+        {"leg", "receiver"}, {"source_depth", source}, {"receiver_depth", depth}, {"range", range}};
+    if (earth.known()) {
+      const GeographicPlace there = earth.at(range);
+      one["latitude"] = there.latitude;
+      one["longitude"] = there.longitude;
+    }
+    one["arrivals"] = ordered_json::parse(paths_json(arrivals));
+    legs.push_back(one);
   });
   const ordered_json json = {{"filetype", "asdic arrivals"},
                              {"version", "1.0"},
@@ -105,7 +110,7 @@ void write_run_arrivals(OutputFile&& to, const RunArrivals& all) {
     return;
   }
   Hdf5Output output(std::move(to));
-  write_hdf5_result(output.file(), arrivals);
+  write_hdf5_result(output.file(), arrivals, EarthLine(all.run_case));
   write_root(output.file(), "asdic arrivals", all.origin);
   if (!all.result.notes.empty()) output.file().set_attribute("", "notes", all.result.notes);
   output.finish();

@@ -5,6 +5,7 @@
 #include "library/physics.h"
 #include "library/propagation.h"
 #include "library/watched.h"
+#include "raytrace/area/earth_places.h"
 #include "raytrace/ocean/depth_in_water.h"
 #include "sonar/ping/asked_arrivals.h"
 
@@ -93,9 +94,11 @@ std::vector<Arrival> arrivals(const Scenario& scenario, const Receiver& receiver
 
 std::vector<Leg> legs(const Scenario& scenario, int ping, const Watch& watch) {
   return watched(watch, [&] {
+    const detail::PingSimulator& simulator = Access::physics(scenario).simulator();
+    const detail::EarthPlaces earth(simulator.scenario().origin, simulator.scenario().area.get());
     std::vector<Leg> result;
-    for (const detail::Leg& leg :
-         detail::legs_of_targets(Access::physics(scenario).simulator(), ping))
+    for (const detail::Leg& leg : detail::legs_of_targets(simulator, ping)) {
+      const detail::GeographicPlace end = earth.at(leg.end.x(), leg.end.y());
       result.push_back({.kind = leg.kind == detail::Leg::Kind::source_to_target
                                     ? Leg::Kind::source_to_target
                                     : Leg::Kind::target_to_array,
@@ -103,7 +106,10 @@ std::vector<Leg> legs(const Scenario& scenario, int ping, const Watch& watch) {
                         .array = leg.array,
                         .bearing = leg.bearing,
                         .range = leg.range,
-                        .arrivals = shown(leg.arrivals)});
+                        .arrivals = shown(leg.arrivals),
+                        .latitude = end.latitude,
+                        .longitude = end.longitude});
+    }
     return result;
   });
 }

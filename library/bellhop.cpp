@@ -47,7 +47,8 @@ std::vector<std::string> write_run(const std::filesystem::path& path, const Scen
                    detail::PropagationResult found = run_of(scenario, run);
                    notes.insert(notes.end(), found.notes.begin(), found.notes.end());
                    detail::write_result(std::move(output),
-                                        detail::propagation_file(run, std::move(found)));
+                                        detail::propagation_file(run, std::move(found)), {},
+                                        detail::EarthLine(run));
                    return notes;
                  },
                  {path});

@@ -10,6 +10,7 @@
 #include "io/scenario/scenario_reader.h"
 #include "library/arguments.h"
 #include "library/watched.h"
+#include "raytrace/cases/earth_line.h"
 #include "raytrace/ocean/depth_in_water.h"
 #include "raytrace/ocean/slice.h"
 #include "raytrace/paths/trace_ray.h"
@@ -38,7 +39,7 @@ std::vector<double> elevations_of(const Fan& fan) {
   return result;
 }
 
-Ray shown(const detail::RayPath& ray) {
+Ray shown(const detail::RayPath& ray, const detail::EarthLine& earth) {
   Ray result{.launch_elevation = ray.launch_elevation,
              .final_elevation = ray.final_elevation,
              .path_length = ray.path_length,
@@ -49,27 +50,39 @@ Ray shown(const detail::RayPath& ray) {
     result.range.push_back(point.range);
     result.depth.push_back(point.depth);
     result.time.push_back(point.time);
+    if (!earth.known()) continue;
+    const detail::GeographicPlace there = earth.at(point.range);
+    result.latitude.push_back(there.latitude);
+    result.longitude.push_back(there.longitude);
   }
   return result;
 }
 
-/// The ocean along the transect, and a depth in it to start from.
+/// The ocean along the transect, a depth in it to start from, and where it is.
 struct Plane {
   detail::Environment ocean;
   double source_depth;
+  detail::EarthLine earth;
 };
 Plane plane_of(const Scenario& scenario) {
   const Scenario::Data& data = Access::data(scenario);
   std::vector<std::string> notes;
   if (!detail::has_sonar(data.document)) {
     const detail::PropagationCase run = run_case_of(scenario, notes);
-    return {run.environment, run.source_depths.front()};
+    return {detail::plane_of(run), run.source_depths.front(), detail::EarthLine(run)};
   }
   const detail::Scenario sonar = detail::scenario_of(data.document, data.path);
   const detail::Vec3 platform = sonar.platforms[0].track.at(0.0).position;
+  detail::PropagationCase along;
+  along.origin = sonar.origin;
+  if (sonar.area)
+    along.on_area = {
+        .area = sonar.area, .place = platform.head<2>(), .bearing = sonar.transect.bearing};
+  if (sonar.area || detail::varies_with_range(sonar.environment))
+    along.on_map = {.x = platform.x(), .y = platform.y(), .bearing = sonar.transect.bearing};
   return {detail::ocean_on_map(sonar).plane(platform.head<2>(), sonar.transect.bearing,
                                             detail::reach_of_area),
-          platform.z()};
+          platform.z(), detail::EarthLine(along)};
 }
 
 }  // namespace
@@ -114,7 +127,8 @@ std::vector<Ray> rays(const Scenario& scenario, const Fan& fan, const Watch& wat
     std::vector<Ray> result;
     for (const double elevation : elevations)
       result.push_back(
-          shown(detail::trace_ray(plane.ocean, depth, elevation, fan.range, 50.0, fan.bounces)));
+          shown(detail::trace_ray(plane.ocean, depth, elevation, fan.range, 50.0, fan.bounces),
+                plane.earth));
     return result;
   });
 }
@@ -153,6 +167,12 @@ Field field(const Scenario& scenario, const Watch& watch) {
     result.pressure = std::move(found.field);
     result.beam_error_db = found.beam_error_db;
     result.warnings.insert(result.warnings.end(), found.notes.begin(), found.notes.end());
+    const detail::EarthLine earth(run);
+    for (const double range : earth.known() ? run.receivers.ranges : std::vector<double>{}) {
+      const detail::GeographicPlace there = earth.at(range);
+      result.latitudes.push_back(there.latitude);
+      result.longitudes.push_back(there.longitude);
+    }
     return result;
   });
 }

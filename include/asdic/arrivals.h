@@ -13,6 +13,7 @@
 /// ```
 
 #include <complex>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -90,6 +91,9 @@ struct Leg {
   double bearing = 0.0;  ///< of travel, true [rad]
   double range = 0.0;    ///< horizontal [m]
   std::vector<Arrival> arrivals = {};
+  /// Of its end on the Earth [degrees]; NaN where that is not known.
+  double latitude = std::numeric_limits<double>::quiet_NaN();
+  double longitude = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// The ways out and home of one ping. \param ping  from 1

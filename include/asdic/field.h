@@ -40,6 +40,8 @@ struct ASDIC_API Field {
   std::vector<std::complex<float>> pressure{};  ///< [sources × rows × columns], range fastest
   double beam_error_db = 0.0;           ///< what more beams would change, at 95 % of receivers [dB]
   std::vector<std::string> warnings{};  ///< what to know before trusting it
+  /// [columns] of the receivers on the Earth [degrees]; empty where they are not known
+  std::vector<double> latitudes{}, longitudes{};
 
   /// −20·log₁₀|p| [dB]; infinite where there is no sound. \param row, column, source  from 0
   /// \throws InputError if there is no such receiver

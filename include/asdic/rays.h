@@ -42,6 +42,8 @@ struct Ray {
   std::vector<double> range{};  ///< [points] [m]
   std::vector<double> depth{};  ///< [points] [m]
   std::vector<double> time{};   ///< [points] [s]
+  /// [points] on the Earth [degrees]; empty where they are not known
+  std::vector<double> latitude{}, longitude{};
 };
 
 /// Traces them along the scenario's transect. \return [count] in the order of the fan

@@ -146,6 +146,15 @@ void Hdf5File::set_attribute(const std::string& object, const std::string& key,
   write_texts(impl_->open_object(object), key, space, values, impl_->path, object);
 }
 
+void Hdf5File::set_flags(const std::string& dataset, const std::vector<std::int8_t>& values,
+                         std::string_view meanings) {
+  const hsize_t size = values.size();
+  const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
+  write_attribute(impl_->open_object(dataset), "flag_values", H5T_NATIVE_INT8, space, values.data(),
+                  impl_->path, dataset);
+  set_attribute(dataset, "flag_meanings", meanings);
+}
+
 bool Hdf5File::has(const std::string& object) const {
   if (impl_->child) return hdf5::ask<&Hdf5File::has>(*impl_->child, object);
   const std::string path = root_or(object);

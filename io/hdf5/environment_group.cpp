@@ -48,7 +48,7 @@ void column(Hdf5File& file, const std::string& name, const std::vector<double>& 
 }  // namespace
 
 void write_environment_group(Hdf5File& file, const Environment& ocean, double first_range,
-                             double last_range) {
+                             double last_range, double map_end) {
   if (!(last_range > first_range)) last_range = first_range + 1.0;
   const std::vector<double> ranges = boundary_ranges(ocean, first_range, last_range);
   std::vector<double> surface, bottom;
@@ -61,6 +61,8 @@ void write_environment_group(Hdf5File& file, const Environment& ocean, double fi
          "depth of the sea surface, positive down", "m", cf::of_boundary("surface"));
   column(file, "bottom_depth", bottom, {"boundary_range"}, {ranges.size()},
          "depth of the sea floor, positive down", "m", cf::of_boundary("bottom"));
+
+  if (map_end < last_range) file.set_attribute("environment", "map_end_m", map_end);
 
   const double top = *std::min_element(surface.begin(), surface.end());
   const double deepest = *std::max_element(bottom.begin(), bottom.end());

@@ -1,4 +1,5 @@
 #pragma once
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,8 +13,10 @@ namespace asdic::detail {
 /// Writes the group /environment of field, rays and arrivals files (docs/formats/field.md): the sea
 /// as a picture needs it, sampled finely enough to be drawn. The scenario text has it exactly.
 /// \param first_range, last_range  the segment that results cover [m]
+/// \param map_end  how far the maps go that it was cut out of, if not all the way [m]
 void write_environment_group(Hdf5File& file, const Environment& ocean, double first_range,
-                             double last_range);
+                             double last_range,
+                             double map_end = std::numeric_limits<double>::infinity());
 
 /// What a file of results says of its ocean's place and making: root attributes latitude_deg and
 /// longitude_deg of the map's [0, 0], ocean_time, and ocean_sources.

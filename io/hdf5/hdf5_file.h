@@ -105,6 +105,9 @@ class Hdf5File {
   void set_attribute(const std::string& object, const std::string& key, std::int64_t value);
   void set_attribute(const std::string& object, const std::string& key,
                      const std::vector<std::string>& values);
+  /// CF's flag_values, of the type of an int8 dataset, and flag_meanings: words between spaces.
+  void set_flags(const std::string& dataset, const std::vector<std::int8_t>& values,
+                 std::string_view meanings);
   void make_group(const std::string& group);
   /// Takes a dataset or a whole group away, if it is there.
   void remove(const std::string& object);

@@ -1,6 +1,7 @@
 #pragma once
 #include "io/hdf5/hdf5_file.h"
 #include "io/ping/growing_table.h"
+#include "raytrace/area/earth_places.h"
 #include "sonar/ping/ping_record.h"
 
 namespace asdic::detail {
@@ -9,12 +10,14 @@ namespace asdic::detail {
 /// eigenray of every leg, and where it bounces.
 class ArrivalTable {
  public:
-  explicit ArrivalTable(Hdf5File& file);
+  /// \param earth  where the map is; known: each leg's end has its latitude and longitude
+  ArrivalTable(Hdf5File& file, const EarthPlaces& earth);
 
   void add(int ping, const Leg& leg);
   void write();  ///< what was added since the last time
 
  private:
+  EarthPlaces earth_;
   GrowingTable arrivals_, bounces_;
 };
 

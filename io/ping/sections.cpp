@@ -16,6 +16,7 @@
 #include "io/scenario/ocean.h"
 #include "io/scenario/writer.h"
 #include "io/text/material_text.h"
+#include "raytrace/area/earth_places.h"
 #include "raytrace/places/propagation_paths.h"
 #include "sonar/scenario/sampling.h"
 #include "sonar/scenario/transmitter.h"
@@ -38,7 +39,7 @@ void write_line(Hdf5File& file, const std::string& side, const RayPaths::Line& l
 }  // namespace
 
 void write_root(Hdf5File& file, const Scenario& scenario, const Provenance& provenance) {
-  write_filetype(file, "asdic ping", "3.2");
+  write_filetype(file, "asdic ping", "3.3");
   file.set_attribute("", "title", scenario.title);
   file.set_attribute("", "program_version", provenance.program_version);
   file.set_attribute("", "build", provenance.build);
@@ -270,12 +271,49 @@ void write_section(Hdf5File& file, const SoundSpeedSection& section) {
                      {"environment/section_range", "environment/section_depth"});
 }
 
-/// Depths of an area on a grid of its own, over all that is heard.
+/// Longitudes along the middle row of that grid, latitudes along its middle column: ticks of a map.
+void write_area_degrees(Hdf5File& file, const EarthPlaces& earth, const Vec2& middle,
+                        const std::vector<double>& east, const std::vector<double>& north) {
+  if (!earth.known()) return;
+  std::vector<double> longitude, latitude;
+  for (const double x : east) longitude.push_back(earth.at(x, middle.y()).longitude);
+  for (const double y : north) latitude.push_back(earth.at(middle.x(), y).latitude);
+  const std::string along = "environment/area_longitude", up = "environment/area_latitude";
+  file.write<double>(along, longitude, {longitude.size()});
+  describe(file, along, "longitude due east and west of the platform's first place", "degrees_east",
+           cf::longitude);
+  file.attach_scales(along, {"environment/area_east"});
+  file.write<double>(up, latitude, {latitude.size()});
+  describe(file, up, "latitude due north and south of the platform's first place", "degrees_north",
+           cf::latitude);
+  file.attach_scales(up, {"environment/area_north"});
+}
+
+/// All that varies along the transect, and where that lies.
+void write_transect(Hdf5File& file, const Scenario& scenario) {
+  const Environment& ocean = scenario.environment;
+  if (!varies_with_range(ocean)) return;
+  file.set_attribute("environment", "transect_x_m", scenario.transect.x);
+  file.set_attribute("environment", "transect_y_m", scenario.transect.y);
+  file.set_attribute("environment", "transect_bearing_deg",
+                     compass_degrees(scenario.transect.bearing));
+  if (scenario.area) {
+    const double reach = scenario.area->reach_on_map({scenario.transect.x, scenario.transect.y},
+                                                     scenario.transect.bearing, reach_of_area);
+    if (reach < reach_of_area) file.set_attribute("environment", "map_end_m", reach);
+  }
+  if (ocean.section) write_section(file, *ocean.section);
+  if (ocean.surface.shape) write_shape(file, "surface", *ocean.surface.shape);
+  if (ocean.bottom.shape) write_shape(file, "bottom", *ocean.bottom.shape);
+}
+
+}  // namespace
+
 void write_area(Hdf5File& file, const Scenario& scenario) {
   const Area& area = *scenario.area;
   const Vec2 middle = scenario.platforms[0].track.at(0.0).position.head<2>();
   const double heard = 0.5 * 1500.0 * end_of_record(scenario);
-  const double step = std::max(area.spacing(middle), heard / 100.0);
+  const double step = std::max(0.25 * area.spacing(middle), heard / 100.0);
   const auto lines = static_cast<int>(std::ceil(heard / step));
   std::vector<double> east, north, depth;
   for (int i = -lines; i <= lines; ++i) {
@@ -292,22 +330,8 @@ void write_area(Hdf5File& file, const Scenario& scenario) {
            "depth of the sea floor, below 0 on land, NaN beyond the map", "m");
   file.attach_scales("environment/area_depth", {"environment/area_north", "environment/area_east"});
   file.set_attribute("environment", "area_bathymetry", area.floor().name());
+  write_area_degrees(file, {scenario.origin, &area}, middle, east, north);
 }
-
-/// All that varies along the transect, and where that lies.
-void write_transect(Hdf5File& file, const Scenario& scenario) {
-  const Environment& ocean = scenario.environment;
-  if (!varies_with_range(ocean)) return;
-  file.set_attribute("environment", "transect_x_m", scenario.transect.x);
-  file.set_attribute("environment", "transect_y_m", scenario.transect.y);
-  file.set_attribute("environment", "transect_bearing_deg",
-                     compass_degrees(scenario.transect.bearing));
-  if (ocean.section) write_section(file, *ocean.section);
-  if (ocean.surface.shape) write_shape(file, "surface", *ocean.surface.shape);
-  if (ocean.bottom.shape) write_shape(file, "bottom", *ocean.bottom.shape);
-}
-
-}  // namespace
 
 void write_environment(Hdf5File& file, const Scenario& scenario) {
   const Environment& ocean = scenario.environment;

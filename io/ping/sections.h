@@ -12,6 +12,8 @@ void write_root(Hdf5File& file, const Scenario& scenario, const Provenance& prov
 /// replica, replica_1, …: one per transmitter.
 void write_replicas(Hdf5File& file, const Scenario& scenario, SampleTimes times);
 void write_environment(Hdf5File& file, const Scenario& scenario);
+/// Depths of an area on a grid of its own, over all that is heard, into group environment.
+void write_area(Hdf5File& file, const Scenario& scenario);
 void write_rays(Hdf5File& file, const RayPaths& rays);
 
 }  // namespace asdic::detail::ping_file

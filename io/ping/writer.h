@@ -35,7 +35,7 @@ struct PingFileWriter::Impl {
         earth(s.origin, s.area.get()),
         times_written_out(times == SampleTimes::written_out),
         long_arrays(has_long_arrays(s)),
-        arrivals(file),
+        arrivals(file, earth),
         echoes(file, "echoes", "echo", ping_file::echo_columns()),
         patches(file, "patches", "patch", ping_file::patch_columns(earth.known())) {
     if (scenario.interferers.empty()) return;

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
+#include "io/hdf5/earth.h"
 #include "io/ping/growing_table.h"
 #include "io/result/tables.h"
 
@@ -186,7 +187,7 @@ void read_legs(const Hdf5File& file, const Table& table, ArrivalsFile& result) {
 
 }  // namespace
 
-void write_arrivals(Hdf5File& file, const ArrivalsFile& arrivals) {
+void write_arrivals(Hdf5File& file, const ArrivalsFile& arrivals, const EarthLine& earth) {
   file.set_attribute("", "frequency_hz", arrivals.frequency);
   file.set_attribute("", "irregular", std::int64_t{arrivals.irregular});
   write_scale(file, "source_depth", "source_depth", arrivals.source_depths,
@@ -195,6 +196,8 @@ void write_arrivals(Hdf5File& file, const ArrivalsFile& arrivals) {
               "depth of the receiver, positive down", "m", cf::depth_axis);
   write_scale(file, "range", "range", arrivals.receiver_ranges,
               "horizontal distance from the source", "m", cf::range_axis);
+  write_on_earth(file, earth, "", "of the receiver", arrivals.receiver_ranges,
+                 {arrivals.receiver_ranges.size()}, {"range"});
   const std::size_t ranges = arrivals.receiver_ranges.size();
   const std::size_t rows = arrivals.irregular ? 1 : arrivals.receiver_depths.size();
   const bellhop::MapPlaces& map = arrivals.map;

@@ -79,6 +79,26 @@ CoverageSummary::Layer summed(double depth, const std::vector<double>& ranges, s
   return layer;
 }
 
+/// Which maps hold a cell's middle.
+void write_map_ends(Hdf5File& file, const EarthPlaces& earth, const Coverage& found,
+                    const Area& area) {
+  std::vector<std::int8_t> ends;
+  for (const double bearing : found.bearings)
+    for (const double range : found.ranges)
+      ends.push_back(
+          static_cast<std::int8_t>(area.end_at(found.receiver.x() + range * std::sin(bearing),
+                                               found.receiver.y() + range * std::cos(bearing))));
+  file.write<std::int8_t>("beyond_map", ends, {found.bearings.size(), found.ranges.size()});
+  describe(
+      file, "beyond_map",
+      "which map ends before a cell's middle, and goes on with its edge: 0 none; 1 that of the "
+      "sea floor; 2 that of the sound speed; 3 that of the seabed's kinds or of the wind");
+  file.set_flags("beyond_map", {0, 1, 2, 3},
+                 "on_the_maps beyond_bathymetry beyond_sound_speed beyond_seabed_or_wind");
+  file.attach_scales("beyond_map", {"bearing", "range"});
+  place_on_earth(file, earth.known(), "beyond_map");
+}
+
 /// Latitudes and longitudes of the cells' middles, and of the ends, where they are known.
 void write_earth(Hdf5File& file, const EarthPlaces& earth, const Coverage& found) {
   if (!earth.known()) return;
@@ -95,11 +115,6 @@ void write_earth(Hdf5File& file, const EarthPlaces& earth, const Coverage& found
     file.set_attribute(name, "latitude_deg", there.latitude);
     file.set_attribute(name, "longitude_deg", there.longitude);
   }
-}
-
-/// CF's word for where the values of a dataset are.
-void place_on_earth(Hdf5File& file, const EarthPlaces& earth, const std::string& dataset) {
-  if (earth.known()) file.set_attribute(dataset, "coordinates", "latitude longitude");
 }
 
 }  // namespace
@@ -153,7 +168,7 @@ void write_coverage(Hdf5File& file, const Coverage& found, const Scenario& scena
     file.write<float>(column.name, all, shape);
     describe(file, column.name, column.meaning, column.unit, column.cf);
     file.attach_scales(column.name, scales);
-    place_on_earth(file, earth, column.name);
+    place_on_earth(file, earth.known(), column.name);
   }
   std::vector<std::int8_t> certainty;
   for (const CoverageLayer& layer : found.layers)
@@ -163,13 +178,14 @@ void write_coverage(Hdf5File& file, const Coverage& found, const Scenario& scena
       file, "certainty",
       "0 sure; 1 no_path: no ray comes there and back; 2 edge: paths begin or end beside it; 3 "
       "no_water: the depth is below the sea floor");
-  file.set_attribute("certainty", "flag_meanings", "sure no_path edge no_water");
+  file.set_flags("certainty", {0, 1, 2, 3}, "sure no_path edge no_water");
   file.attach_scales("certainty", scales);
-  place_on_earth(file, earth, "certainty");
+  place_on_earth(file, earth.known(), "certainty");
   file.write<float>("bottom_depth", found.bottom_depth, {bearings.size(), found.ranges.size()});
   describe(file, "bottom_depth", "depth of the sea floor, positive down", "m", cf::sea_floor);
   file.attach_scales("bottom_depth", {"bearing", "range"});
-  place_on_earth(file, earth, "bottom_depth");
+  place_on_earth(file, earth.known(), "bottom_depth");
+  if (scenario.area) write_map_ends(file, earth, found, *scenario.area);
   write_tracks(file, scenario);
 }
 

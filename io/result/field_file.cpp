@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "io/bellhop/finite_field.h"
+#include "io/hdf5/earth.h"
 #include "io/hdf5/scale.h"
 #include "raytrace/cases/beam_error_text.h"
 
@@ -38,6 +39,11 @@ constexpr std::string_view field_kinds[] = {"coherent", "incoherent", "semi-cohe
 
 namespace {
 
+/// Coordinates of scattered receivers, but for their places on the Earth.
+const char* places_of(const ReceiverGrid& grid) {
+  return grid.irregular ? "receiver_depth receiver_range" : "";
+}
+
 /// What each receiver is sure to, and how many of them are. \param shape, scales  of the receivers
 void write_beam_errors(Hdf5File& file, const FieldData& field, const Shape& shape,
                        const std::vector<std::string>& scales) {
@@ -49,8 +55,7 @@ void write_beam_errors(Hdf5File& file, const FieldData& field, const Shape& shap
            "outside of the water, or a column that was not looked at",
            "dB");
   file.attach_scales("beam_error", scales);
-  if (field.receivers.irregular)
-    file.set_attribute("beam_error", "coordinates", "receiver_depth receiver_range");
+  place_on_earth(file, field.earth.known(), "beam_error", places_of(field.receivers));
   if (const double share = share_sure(field.beam_errors); !std::isnan(share)) {
     file.set_attribute("", "sure_pct", 100.0 * share);
     file.set_attribute("", "sure_db", sure_db);
@@ -117,8 +122,9 @@ void write_field(Hdf5File& file, const FieldData& field) {
            "pressure relative to 1 m from the source; transmission loss = -20 log10 |pressure|",
            "1");
   file.attach_scales("pressure", scales);
-  if (grid.irregular)
-    file.set_attribute("pressure", "coordinates", "receiver_depth receiver_range");
+  place_on_earth(file, field.earth.known(), "pressure", places_of(grid));
+  write_on_earth(file, field.earth, "", "of the receiver", grid.ranges, {grid.ranges.size()},
+                 {grid.irregular ? "receiver" : "range"});
   shape.pop_back(), scales.pop_back();
   write_beam_errors(file, field, shape, scales);
 }

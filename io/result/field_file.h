@@ -6,6 +6,7 @@
 
 #include "io/bellhop/bellhop_files.h"
 #include "io/hdf5/hdf5_file.h"
+#include "raytrace/cases/earth_line.h"
 #include "raytrace/cases/propagation_case.h"
 
 namespace asdic::detail {
@@ -29,6 +30,7 @@ struct FieldData {
                                    ///< empty: not known of any (PropagationResult::beam_errors)
   std::string solver;           ///< "beams" or "waves"; empty: not known
   bellhop::MapPlaces map = {};  ///< of a field over a map: its planes
+  EarthLine earth = {};         ///< where its receivers are on the Earth
 };
 
 /// Writes the datasets and attributes of docs/formats/field.md, but for the root's (filetype,

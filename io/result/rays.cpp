@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/error.h"
+#include "io/hdf5/earth.h"
 #include "io/hdf5/scale.h"
 #include "io/result/tables.h"
 
@@ -39,7 +40,7 @@ int* number_of_header(RayFile& file, std::size_t i) {
 
 }  // namespace
 
-void write_rays(Hdf5File& file, const RayFile& rays) {
+void write_rays(Hdf5File& file, const RayFile& rays, const EarthLine& earth) {
   RayFile header = {.sources_x = rays.sources_x,
                     .sources_y = rays.sources_y,
                     .sources_z = rays.sources_z,
@@ -70,6 +71,9 @@ void write_rays(Hdf5File& file, const RayFile& rays) {
   write(file, "bottom_bounces", bottom, {n}, "reflections at the bottom");
   write(file, "range", range, {n, points}, "horizontal distance from the source", "m");
   write(file, "depth", depth, {n, points}, "depth, positive down", "m", cf::depth);
+  write_on_earth(file, earth, "rays/", "of the point", range, {n, points},
+                 {"rays/ray", "rays/point"});
+  for (const char* name : {"rays/range", "rays/depth"}) place_on_earth(file, earth.known(), name);
 }
 
 RayFile read_rays(const Hdf5File& file) {

@@ -86,20 +86,22 @@ PropagationFile read_hdf5_result(const Hdf5File& file) {
                     .expected = "\"asdic field\", \"asdic arrivals\" or \"asdic rays\""});
 }
 
-void write_hdf5_result(Hdf5File& file, const PropagationFile& result) {
+void write_hdf5_result(Hdf5File& file, const PropagationFile& result, const EarthLine& earth) {
   write_filetype(file, "asdic " + std::string(kind_of(result)), result_version);
   if (const auto* field = std::get_if<bellhop::ShadeFile>(&result)) {
     file.set_attribute("", "title", field->title);
     write_layout(file, *field);
-    write_field(file, from_shade_file(*field));
+    FieldData data = from_shade_file(*field);
+    data.earth = earth;
+    write_field(file, data);
   } else if (const auto* arrivals = std::get_if<bellhop::ArrivalsFile>(&result)) {
     file.set_attribute("", "title", "");
     write_layout(file, *arrivals);
-    result_tables::write_arrivals(file, *arrivals);
+    result_tables::write_arrivals(file, *arrivals, earth);
   } else {
     const auto& rays = std::get<bellhop::RayFile>(result);
     file.set_attribute("", "title", rays.title);
-    result_tables::write_rays(file, rays);
+    result_tables::write_rays(file, rays, earth);
   }
 }
 

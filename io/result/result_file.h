@@ -5,6 +5,7 @@
 
 #include "io/bellhop/bellhop_files.h"
 #include "io/hdf5/hdf5_file.h"
+#include "raytrace/cases/earth_line.h"
 
 namespace asdic::detail {
 
@@ -12,7 +13,7 @@ namespace asdic::detail {
 using PropagationFile = std::variant<bellhop::ShadeFile, bellhop::ArrivalsFile, bellhop::RayFile>;
 
 /// Of docs/formats/field.md, arrivals.md and rays.md, in HDF5.
-inline constexpr const char* result_version = "1.4";
+inline constexpr const char* result_version = "1.5";
 
 /// "field", "arrivals" or "rays".
 [[nodiscard]] std::string_view kind_of(const PropagationFile& file) noexcept;
@@ -33,6 +34,6 @@ inline constexpr const char* result_version = "1.4";
 /// dialect included, is lost on the way there and back but float32's last bit in angles; elevations
 /// are positive up there.
 [[nodiscard]] PropagationFile read_hdf5_result(const Hdf5File& file);
-void write_hdf5_result(Hdf5File& file, const PropagationFile& result);
+void write_hdf5_result(Hdf5File& file, const PropagationFile& result, const EarthLine& earth = {});
 
 }  // namespace asdic::detail

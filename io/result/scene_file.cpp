@@ -9,6 +9,7 @@
 #include "io/hdf5/earth.h"
 #include "io/hdf5/environment_group.h"
 #include "io/hdf5/scale.h"
+#include "io/ping/sections.h"
 #include "raytrace/ocean/slice.h"
 
 namespace asdic::detail {
@@ -148,7 +149,11 @@ void write_scene(const std::filesystem::path& path, const Scenario& scenario) {
   file.set_attribute("", "bearing_deg", compass_degrees(bearing));
   const Environment plane =
       ocean_on_map(scenario).plane(source.head<2>(), bearing, margin * extent);
-  write_environment_group(file, plane, 0.0, margin * extent);
+  const double last = margin * extent;
+  write_environment_group(
+      file, plane, 0.0, last,
+      scenario.area ? scenario.area->reach_on_map(source.head<2>(), bearing, last) : last);
+  if (scenario.area) ping_file::write_area(file, scenario);
   file.close();
 }
 
@@ -169,7 +174,8 @@ void write_scene(const std::filesystem::path& path, const PropagationCase& run) 
     file.set_attribute("", "irregular", std::int64_t{run.receivers.irregular});
     last = *std::max_element(run.receivers.ranges.begin(), run.receivers.ranges.end());
   }
-  write_environment_group(file, plane_of(run), 0.0, last > 0.0 ? last : 50e3);
+  if (last <= 0.0) last = 50e3;
+  write_environment_group(file, plane_of(run), 0.0, last, reach_on_map(run, last));
   file.close();
 }
 

@@ -20,7 +20,8 @@ std::string ending_of(const std::filesystem::path& path) {
 
 }  // namespace
 
-void write_result(OutputFile&& to, PropagationFile&& result, const BellhopWriting& how) {
+void write_result(OutputFile&& to, PropagationFile&& result, const BellhopWriting& how,
+                  const EarthLine& earth) {
   const std::string ending = ending_of(to.target());
   const auto dialect = [&](bellhop::Dialect as_it_is) {
     if (!how.wide) return as_it_is;
@@ -29,7 +30,7 @@ void write_result(OutputFile&& to, PropagationFile&& result, const BellhopWritin
   if (ending == ".h5" || ending == ".hdf5" || ending == ".nc") {
     Hdf5Output output(std::move(to));
     output.file().set_attribute("", "program_version", provenance(1).program_version);
-    write_hdf5_result(output.file(), result);
+    write_hdf5_result(output.file(), result, earth);
     output.finish();
   } else if (auto* field = std::get_if<bellhop::ShadeFile>(&result); field && ending == ".shd") {
     field->dialect = dialect(field->dialect);

@@ -14,8 +14,10 @@ struct BellhopWriting {
 };
 
 /// Writes a field, arrivals or rays: HDF5, or by the name's ending .shd, .arr or .ray.
+/// \param earth  where its plane is
 /// \throws InputError for a name of another kind, RunError
-void write_result(OutputFile&& to, PropagationFile&& result, const BellhopWriting& how = {});
+void write_result(OutputFile&& to, PropagationFile&& result, const BellhopWriting& how = {},
+                  const EarthLine& earth = {});
 
 /// What a run was asked for, as such a file holds it.
 [[nodiscard]] PropagationFile propagation_file(const PropagationCase& run_case,

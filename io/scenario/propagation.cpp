@@ -29,8 +29,7 @@ void tell_beyond_the_map(const PropagationCase& run, std::vector<std::string>& n
   if (!run.on_area) return;
   double furthest = run.box_range;
   for (const double range : run.receivers.ranges) furthest = std::max(furthest, range);
-  const auto& [area, place, bearing] = *run.on_area;
-  const double reach = area->reach_on_map(place, bearing + run.off_transect, furthest);
+  const double reach = reach_on_map(run, furthest);
   if (reach < furthest)
     notes.push_back("environment.area: sound is followed to " + to_text(furthest / 1000.0) +
                     " km, and the maps end " + to_text(std::round(reach) / 1000.0) +
@@ -50,20 +49,21 @@ PropagationCase of_ocean_and_run(const TomlValue& document, const std::filesyste
   run.frequency = table.number(
       "frequency", {.noun = "frequency", .unit = "Hz", .low = 0.0, .high = 1e8, .above = true});
   TomlTable environment = root.table("environment");
-  for (const char* of_a_sonar : {"wind_speed", "transect"})
-    static_cast<void>(environment.has(of_a_sonar));
+  static_cast<void>(environment.has("wind_speed"));  // of a sonar
   run.origin = scenario::read_origin(environment);
   scenario::OceanReading reading{.folder = folder, .frequency = run.frequency, .notes = notes};
   std::optional<scenario::AreaReading> area = scenario::read_area(environment, reading, run.origin);
   if (area) reading.area = &*area;
   run.environment = scenario::read_ocean(environment, reading);
+  const bool along = environment.has("transect");
+  const Transect transect = scenario::read_transect(environment);
   if (area) {
-    const Transect transect = scenario::read_transect(environment);
     run.on_area = {.area = area->build(run.environment),
                    .place = Vec2(transect.x, transect.y),
                    .bearing = transect.bearing};
     run.environment = along_transect(*run.on_area->area, transect);
   }
+  if (area || along || varies_with_range(run.environment)) run.on_map = transect;
   environment.finish();
   scenario::read_run(std::move(table), run);
   root.finish();
@@ -85,6 +85,8 @@ PropagationCase of_sonar(const TomlValue& document, const Scenario& scenario,
   if (scenario.area)
     run.on_area = {
         .area = scenario.area, .place = platform.head<2>(), .bearing = scenario.transect.bearing};
+  if (scenario.area || varies_with_range(scenario.environment))
+    run.on_map = {.x = platform.x(), .y = platform.y(), .bearing = scenario.transect.bearing};
   run.frequency = Pulse(scenario.pulse).centre_frequency();
   run.source_depths = {platform.z()};
   TomlTable root(document);

@@ -90,7 +90,7 @@ ARRIVAL_UNITS = {"delay": "s", "path_length": "m", "range": "m", "level_db": "dB
                  "bearing_deg": "degrees", "launch_elevation_deg": "degrees",
                  "arrival_elevation_deg": "degrees", "launch_deflection_deg": "degrees",
                  "arrival_deflection_deg": "degrees", "bounce_range": "m",
-                 "bounce_grazing_deg": "degrees"}
+                 "bounce_grazing_deg": "degrees", "latitude": "degrees", "longitude": "degrees"}
 
 
 def arrivals(columns, legs=None, warnings=()) -> pd.DataFrame:
@@ -149,6 +149,9 @@ def field(found: dict) -> xr.DataArray:
         coords = {"depth": ("depth", found["depth"], units),
                   "range": ("range", found["range"], units)}
     coords["source_depth"] = ("source_depth", found["source_depth"], units)
+    for name, unit in (("latitude", "degrees_north"), ("longitude", "degrees_east")):
+        if name in found:
+            coords[name] = (dims[-1], found[name], {"units": unit})
     made = xr.DataArray(pressure, dims=dims, coords=coords, name="pressure", attrs=attrs)
     return made.isel(source_depth=0) if len(found["source_depth"]) == 1 else made
 

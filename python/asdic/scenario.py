@@ -396,7 +396,8 @@ class Scenario(_Table):
         pandas.DataFrame
             A row a path, sorted by delay [s]; ``amplitude`` is complex, re 1 m; ``bounce_range`` [m],
             ``bounce_grazing_deg`` and ``bounce_bottom`` hold an array each. Of legs also leg (0 to
-            the target, 1 to the array), target, array, path, bearing_deg, range.
+            the target, 1 to the array), target, array, path, bearing_deg, range, and latitude and
+            longitude of the leg's end [degrees] where the map's place on the Earth is known.
         Arrivals
             With `arrays`: the same as attributes. Of legs also a dictionary of what is of them.
         """
@@ -431,7 +432,8 @@ class Scenario(_Table):
 
         Returns a pandas.DataFrame, a row a ray: launch_elevation_deg, final_elevation_deg,
         path_length [m], surface_bounces, bottom_bounces, turns, and the arrays range, depth [m] and
-        time [s].
+        time [s]; over an area or along a transect whose place on the Earth is known, also latitude
+        and longitude [degrees].
         """
         range = described.number("range", range, "m")
         source_depth = described.number("source_depth", source_depth, "m", True)
@@ -490,6 +492,8 @@ class Scenario(_Table):
         xarray.DataArray
             Complex pressure re 1 m, e^{+iωt}, (depth, range); with several sources
             (source_depth, depth, range). Transmission loss is ``-20*np.log10(abs(p))``.
+            Over an area or along a transect whose place on the Earth is known, ``latitude`` and
+            ``longitude`` of the receivers are coordinates [degrees].
             ``attrs["warnings"]`` tells what to know before trusting it.
         """
         scenario = self

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "watched.h"
@@ -94,7 +95,7 @@ py::tuple find_legs(const Scenario& scenario, int ping) {
       watched([&](const Watch& watch) { return legs(scenario, ping, watch); });
   Columns columns({});
   std::vector<std::int32_t> leg, target, array, path;
-  std::vector<double> bearing, range;
+  std::vector<double> bearing, range, latitude, longitude;
   for (const Leg& one : all) {
     columns.append(one.arrivals);
     for (std::size_t i = 0; i < one.arrivals.size(); ++i) {
@@ -104,14 +105,20 @@ py::tuple find_legs(const Scenario& scenario, int ping) {
       path.push_back(static_cast<std::int32_t>(i));
       bearing.push_back(bearing_deg(one.bearing));
       range.push_back(one.range);
+      latitude.push_back(one.latitude);
+      longitude.push_back(one.longitude);
     }
   }
   using namespace py::literals;
-  return py::make_tuple(
-      std::move(columns),
-      py::dict("leg"_a = taken(std::move(leg)), "target"_a = taken(std::move(target)),
-               "array"_a = taken(std::move(array)), "path"_a = taken(std::move(path)),
-               "bearing_deg"_a = taken(std::move(bearing)), "range"_a = taken(std::move(range))));
+  py::dict of_legs("leg"_a = taken(std::move(leg)), "target"_a = taken(std::move(target)),
+                   "array"_a = taken(std::move(array)), "path"_a = taken(std::move(path)),
+                   "bearing_deg"_a = taken(std::move(bearing)),
+                   "range"_a = taken(std::move(range)));
+  if (std::any_of(latitude.begin(), latitude.end(), [](double x) { return !std::isnan(x); })) {
+    of_legs["latitude"] = taken(std::move(latitude));
+    of_legs["longitude"] = taken(std::move(longitude));
+  }
+  return py::make_tuple(std::move(columns), std::move(of_legs));
 }
 
 }  // namespace

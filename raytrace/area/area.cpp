@@ -368,6 +368,14 @@ Area::Edge Area::nearest_edge(const Vec2& place, double most) const {
   return found;
 }
 
+Area::End Area::end_at(double x, double y) const noexcept {
+  if (!maps_.floor.covers(x, y)) return End::floor;
+  if (maps_.water && !maps_.water->covers(x, y)) return End::water;
+  const bool others =
+      (!maps_.seabed || maps_.seabed->covers(x, y)) && (!maps_.wind || maps_.wind->covers(x, y));
+  return others ? End::none : End::other;
+}
+
 Area::Winds Area::winds(const Vec2& place, double distance) const {
   Winds found{.least = infinity, .most = 0.0};
   constexpr int lines = 50;  // to either side

@@ -62,6 +62,9 @@ class Area {
     std::string map = {};                  ///< its name
   };
   [[nodiscard]] Edge nearest_edge(const Vec2& place, double most) const;
+  /// Which map has ended before a place, so that its edge is what is there.
+  enum class End : int { none, floor, water, other };
+  [[nodiscard]] End end_at(double x, double y) const noexcept;
   /// Of the floor's grid at a place [m].
   [[nodiscard]] double spacing(const Vec2& place) const noexcept {
     return maps_.floor.spacing(place.x(), place.y());

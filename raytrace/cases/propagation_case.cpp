@@ -26,4 +26,10 @@ Environment plane_of(const PropagationCase& run_case) {
   return slice(run_case.environment, 0.0, std::cos(run_case.off_transect));
 }
 
+double reach_on_map(const PropagationCase& run_case, double most) {
+  if (!run_case.on_area) return most;
+  const auto& [area, place, bearing] = *run_case.on_area;
+  return area->reach_on_map(place, bearing + run_case.off_transect, most);
+}
+
 }  // namespace asdic::detail

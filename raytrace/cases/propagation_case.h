@@ -7,6 +7,7 @@
 #include "core/units.h"
 #include "raytrace/area/ocean_on_map.h"
 #include "raytrace/ocean/ocean_origin.h"
+#include "raytrace/ocean/transect.h"
 
 namespace asdic::detail {
 
@@ -107,9 +108,10 @@ struct PropagationCase {
     Vec2 place = Vec2::Zero();
     double bearing = 0.0;  ///< [rad]
   };
-  std::optional<OnArea> on_area;  ///< none: the same everywhere across the transect
-  int dimension = 2;              ///< 3: rays are turned out of their planes, too
-  double off_transect = 0.0;      ///< of the line on which the receivers lie, clockwise [rad]
+  std::optional<OnArea> on_area;   ///< none: the same everywhere across the transect
+  std::optional<Transect> on_map;  ///< from the sources along `environment`; none: any bearing
+  int dimension = 2;               ///< 3: rays are turned out of their planes, too
+  double off_transect = 0.0;       ///< of the line on which the receivers lie, clockwise [rad]
   std::vector<double> source_depths = {100.0};  ///< [m]
   ReceiverGrid receivers;
   Task task = Task::field;
@@ -123,5 +125,8 @@ struct PropagationCase {
 
 /// The vertical plane through sources and receivers, `environment` unless they lie elsewhere.
 [[nodiscard]] Environment plane_of(const PropagationCase& run_case);
+
+/// How far the maps of an area go on in that plane, to `most` m; `most` itself without one [m].
+[[nodiscard]] double reach_on_map(const PropagationCase& run_case, double most);
 
 }  // namespace asdic::detail

@@ -1,4 +1,7 @@
 #pragma once
+#include <limits>
+
+#include "core/units.h"
 #include "raytrace/ocean/arrivals.h"
 
 namespace asdic::detail {
@@ -12,6 +15,8 @@ struct Leg {
   int channel = -1;      ///< its phone, −1 for the array's reference point
   double bearing = 0.0;  ///< direction of travel, clockwise from north [rad]
   double range = 0.0;    ///< horizontal [m]
+  /// Where it ends on the map [m]; NaN where it has no bearing of its own.
+  Vec2 end = Vec2::Constant(std::numeric_limits<double>::quiet_NaN());
   Arrivals arrivals;
 };
 

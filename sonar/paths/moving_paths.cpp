@@ -78,6 +78,7 @@ Way MovingPaths::way_at(const Vec3& from, const Track& track, const Vec3& offset
   const Separation s = separation(from, to);
   way.leg.bearing = s.bearing;
   way.leg.range = s.range;
+  way.leg.end = to.head<2>();
   way.leg.arrivals = known.empty() ? paths_.find(from, to, frequency_, limits_, reuse_)
                                    : paths_.follow(known, from, to, frequency_, limits_, reuse_);
   return way;

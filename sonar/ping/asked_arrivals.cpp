@@ -58,6 +58,7 @@ Leg leg_to(const PingSimulator& simulator, int ping, const AskedReceiver& receiv
   const Vec3 source(platform.x(), platform.y(), from),
       end(platform.x() + receiver.range * std::sin(bearing),
           platform.y() + receiver.range * std::cos(bearing), to);
+  if (receiver.bearing || !paths.layered()) leg.end = end.head<2>();
   const PathLimits limits = limits_of(
       scenario.propagation,
       enough_bounces(paths, scenario.propagation, source, end, frequency, end_of_record(scenario)));

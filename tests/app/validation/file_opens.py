@@ -194,7 +194,7 @@ def check_attributes(f, check):
                 check.that(name in f[place].attrs, f"{place}: no attribute {name}")
     check.that(text(f.attrs.get("filetype", "")) == "asdic ping",
                f"filetype {f.attrs.get('filetype')!r}")
-    check.that(text(f.attrs.get("version", "")) == "3.2", f"version {f.attrs.get('version')!r}")
+    check.that(text(f.attrs.get("version", "")) == "3.3", f"version {f.attrs.get('version')!r}")
     check.that(re.fullmatch(r"[0-9a-f]{64}", text(f.attrs.get("scenario_sha256", ""))),
                "scenario_sha256: not 64 hexadecimal digits")
     if "scenario" in f:

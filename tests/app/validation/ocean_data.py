@@ -785,13 +785,14 @@ class Guide(Folder):
         era5(self.folder / "era5_2024_03.nc", first=1_088_736, south=32.0, west=296.0)
         page = (ROOT / "docs/guide/real-ocean.md").read_text()
         blocks = re.findall(r"<!-- data -->\n```sh\n(.*?)```", page, re.S)
-        self.assertEqual(len(blocks), 4)
+        self.assertEqual(len(blocks), 5)
         for block in blocks:
             done = subprocess.run(["bash", "-euc", block], cwd=self.folder, capture_output=True, text=True,
                                   env={**os.environ, "PATH": f"{Path(ASDIC).parent}:{os.environ['PATH']}"})
             self.assertEqual(done.returncode, 0, block + done.stdout + done.stderr)
-        self.assertIn("33.7 N -63 E is the map's [0, 0]; its ocean: 2024-03-15T06:00", done.stdout)
-        self.assertIn("temperature, salinity: hycom_20240315.nc", done.stdout)
+            if "cat > muir_ping.toml" in block:
+                self.assertIn("33.7 N -63 E is the map's [0, 0]; its ocean: 2024-03-15T06:00", done.stdout)
+                self.assertIn("temperature, salinity: hycom_20240315.nc", done.stdout)
         place = tomllib.loads((self.folder / "place.toml").read_text())["environment"]
         water = place["sound_speed"]
         z = np.array(water["depth"])
@@ -804,6 +805,26 @@ class Guide(Folder):
             self.assertEqual(f.attrs["complete"], 1)
             self.assertGreater(f["summary/paths"][0, 0], 0)
             self.assertAlmostEqual(f["target_longitude"][0, 0], -63.0 + np.degrees(12e3 / radii(33.7)[1]), 4)
+        # the vehicle's run over the area: where it is at each ping, and at the third for asdic area
+        way = np.array([[-6000.0, -3000.0], [-3600.0, -3000.0], [-3600.0, -600.0]])
+
+        def on_map(lat, lon):
+            span, bearing = inverse(33.7, -62.5, np.asarray(lat), np.asarray(lon))
+            return np.stack([span * np.sin(bearing), span * np.cos(bearing)], axis=-1)
+
+        with h5py.File(self.folder / "muir_run.h5") as f:
+            np.testing.assert_allclose(on_map(f["platform_latitude"][()], f["platform_longitude"][()]), way, atol=0.01)
+            self.assertTrue((f["summary/paths"][()] > 0).all())
+            # the sea floor below the first place, of the cone that the tile was made of
+            depth = 1400.0 + 0.15 * np.hypot(*way[0])
+            self.assertAlmostEqual(f["environment"].attrs["bottom_depth_m"], depth, delta=5.0)
+        with h5py.File(self.folder / "muir_area.h5") as f:
+            np.testing.assert_allclose(f["array_position"][:2], way[2], atol=1e-6)
+            self.assertEqual(f["beyond_map"][()].max(), 0)
+        with h5py.File(self.folder / "muir_field.h5") as f:
+            east = way[0] + np.stack([f["range"][()], 0.0 * f["range"][()]], axis=-1)
+            np.testing.assert_allclose(on_map(f["latitude"][()], f["longitude"][()]), east, atol=0.01)
+        self.assertGreater((self.folder / "before/geometry.png").stat().st_size, 10_000)
 
 
 if __name__ == "__main__":
