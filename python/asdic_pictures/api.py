@@ -106,7 +106,7 @@ def of_result(found, wanted: str, axes=None, *, limits=None, theme=None, **optio
 
 
 def of_area(name: str, source, axes=None, *, depth=None, limits=None, theme=None):
-    """A picture of what a sonar sees of the area. \param depth  of the target [m]; none: the first"""
+    """A picture of what a sonar sees of the area. \\param depth  of the target [m]; none: the first"""
     found = _area.read(source)
     if name not in OF_AREAS:
         raise InputError("what", f'"{name}"', "one of " + ", ".join(OF_AREAS))

@@ -14,6 +14,7 @@ from .data import InputError
 
 KIND = "asdic area"
 SURE, NO_PATH, EDGE, NO_WATER = range(4)
+ENDED = {1: "the sea floor", 2: "the sound speed", 3: "the seabed or the wind"}    # of beyond_map
 
 @dataclass
 class Value:
@@ -53,6 +54,8 @@ class Area:
     beyond: str = ""            # what the file warns of maps that end within the reach
     tracks: dict = field(default_factory=dict)   # "platforms", "targets" → (names, [n, instants, 3])
     tags: dict = field(default_factory=dict)
+    ends: np.ndarray | None = None      # [b, r] which map has ended before the cell, 0: none
+    earth: tuple | None = None          # latitude and longitude of the cells [b, r] [°]
 
     @property
     def apart(self) -> float:
@@ -90,7 +93,20 @@ def read(path) -> Area:
         return Area(reader.title(), depth, bearing, span, reader.array("array_position"),
                     reader.array("source_position"), values, values["certainty"],
                     values["uncertainty_db"], reader.array("bottom_depth"), about, middle,
-                    of_the_map(attributes), tracks, reader.tags())
+                    of_the_map(attributes), tracks, reader.tags(),
+                    *(per_cell(reader, names, shape[1:]) for names in
+                      (("beyond_map",), ("latitude", "longitude"))))
+
+
+def per_cell(reader, names: tuple, shape: tuple):
+    """Datasets over (bearing, range): one by itself, several as a tuple; None without them."""
+    if not all(reader.has(name) for name in names):
+        return None
+    found = tuple(reader.array(name) for name in names)
+    for name, values in zip(names, found):
+        if values.shape != shape:
+            raise InputError(reader.path, f"{name} of shape {values.shape}", f"{shape}")
+    return found if len(found) > 1 else found[0]
 
 
 def of_the_map(attributes) -> str:
@@ -140,8 +156,7 @@ def frame(axes, area: Area) -> None:
     style.image_frame(axes)
     axes.set_facecolor(style.PAPER)
     axes.set_aspect("equal", anchor="W")
-    axes.set_xlim(-1.04 * far, 1.04 * far)
-    axes.set_ylim(-1.04 * far, 1.04 * far)
+    style.compass(axes, far)
     axes.set_xlabel(f"east of {area.middle} / km")
     axes.set_ylabel("north of the array / km")
     for ring in axes.get_xticks():
@@ -149,7 +164,46 @@ def frame(axes, area: Area) -> None:
             t = np.linspace(0.0, 2.0 * np.pi, 361)
             axes.plot(ring * np.sin(t), ring * np.cos(t), color=style.GREY, lw=0.6, alpha=0.6,
                       zorder=4)
+    graticule(axes, area)
 
+
+def graticule(axes, area: Area) -> None:
+    """Latitudes and longitudes on the frame: those due north and due east of the array."""
+    if area.earth is None:
+        return
+    bearing = np.radians(area.bearing)
+    x, y = (np.outer(f(bearing), area.range / 1e3).ravel() for f in (np.sin, np.cos))
+    latitude, longitude = (values.ravel() for values in area.earth)
+    good = np.isfinite(latitude) & np.isfinite(longitude)
+    if good.sum() < 10:
+        return
+    ends = np.array([-1.0, 1.0]) * area.range[-1] / 1e3
+    # meridians converge, parallels bend; both vanish on the axes
+    of_x = np.linalg.lstsq(np.stack([x**0, x, x * y], 1)[good], longitude[good], rcond=None)[0]
+    of_y = np.linalg.lstsq(np.stack([x**0, y, x * x], 1)[good], latitude[good], rcond=None)[0]
+    style.degree_ticks(axes, ends, of_x[0] + of_x[1] * ends, ends, of_y[0] + of_y[1] * ends)
+
+
+def beyond_the_map(axes, area: Area) -> list:
+    """Hatches what lies beyond the maps. → handles"""
+    if area.ends is None or not (area.ends > 0).any():
+        return []
+    gone = area.ends > 0
+    names = [word for number, word in ENDED.items() if (area.ends == number).any()]
+    return style.hatched(axes, among(area, gone), area.range[-1] / 1e3,
+                         f"beyond the map of {' and '.join(names)}: its edge goes on", 24, True)
+
+
+def among(area: Area, cells):
+    """(x, y) → whether a place [km from the array] is in one of some cells [b, r]"""
+    turn, step = 360.0 / area.bearing.size, area.range[0] / 500.0
+
+    def inside(x, y):
+        ring = (np.hypot(x, y) / step).astype(int)
+        ray = (np.degrees(np.arctan2(x, y)) % 360.0 / turn).astype(int) % area.bearing.size
+        return (ring < area.range.size) & cells[ray, np.minimum(ring, area.range.size - 1)]
+
+    return inside
 
 def contours(axes, area: Area) -> list:
     """Of the sea floor's depth. → handles"""
@@ -247,7 +301,7 @@ def draw_map(area: Area, name: str, layer: int = 0, axes=None, limits=None):
         handles += hatch_unsure(axes, area, layer)
     if name in ("signal_excess", "detection_probability"):
         handles += half_detected(axes, area, layer)
-    handles += contours(axes, area) + marks(axes, area)
+    handles += beyond_the_map(axes, area) + contours(axes, area) + marks(axes, area)
     style.colour_bar(fig, mesh, axes, what.label, style.beyond(shown, limits))
     style.subtitle(axes, with_warning(area, f"{area.title}  ·  target at {area.depth[layer]:g} m"
                                             f"  ·  {area.about}"))
@@ -265,11 +319,8 @@ def hatch_unsure(axes, area: Area, layer: int) -> list:
     unsure = area.certainty[layer] == EDGE
     if not unsure.any():
         return []
-    x, y = middles(area)
-    axes.contourf(x, y, closed(unsure.astype(float)), levels=[0.5, 1.5], colors="none",
-                  hatches=["//////"], zorder=2.5)
-    return [Patch(fc="none", ec=style.INK, hatch="//////", lw=0.0,
-                  label="edge of a shadow or caustic: uncertain")]
+    return style.hatched(axes, among(area, unsure), area.range[-1] / 1e3,
+                         "edge of a shadow or caustic: uncertain", 90)
 
 
 def smoothed(values, half: int = 4):
@@ -302,8 +353,9 @@ def draw_sea_floor(area: Area, axes=None, limits=None):
     mesh = axes.pcolormesh(*edges(area), area.bottom, cmap=style.LOSS_MAP, vmin=limits[0],
                            vmax=limits[1], rasterized=True, zorder=1)
     frame(axes, area)
-    handles = contours(axes, area) + marks(axes, area)
-    style.colour_bar(fig, mesh, axes, "depth of the sea floor / m", style.beyond(area.bottom, limits))
+    handles = beyond_the_map(axes, area) + contours(axes, area) + marks(axes, area)
+    bar = style.colour_bar(fig, mesh, axes, "depth of the sea floor / m", style.beyond(area.bottom, limits))
+    bar.ax.invert_yaxis()   # deep is down
     style.subtitle(axes, with_warning(area, area.title))
     style.legend_below(axes, handles, ncol=3)
     return fig
@@ -317,14 +369,21 @@ def draw_sections(area: Area, axes=None, limits=None):
     deepest = float(np.nanmax(area.bottom))
     for k in range(count):
         row = int(round(k * area.bearing.size / count)) % area.bearing.size
-        axes.plot(area.range / 1e3, area.bottom[row], color=shades[k], lw=1.5,
+        known = np.full(area.range.size, True) if area.ends is None else area.ends[row] == 0
+        axes.plot(area.range / 1e3, np.where(known, area.bottom[row], np.nan), color=shades[k], lw=1.5,
                   label=f"towards {bearing_text(area.bearing[row])}")
+        if not known.all():
+            axes.plot(area.range / 1e3, np.where(known, np.nan, area.bottom[row]), color=shades[k],
+                      lw=1.2, ls=(0, (1, 2)))
     for depth in area.depth:
         axes.axhline(depth, color=style.INK, lw=1.0, ls=(0, (4, 3)))
         axes.annotate(f"target {depth:g} m", (1.0, depth), (-4, 4), xycoords=("axes fraction", "data"),
                       textcoords="offset points", ha="right", fontsize=8, color=style.NOTE)
     axes.plot([0.0], [area.array[2]], marker="^", ms=8, color=style.INK, ls="none", label="array",
               clip_on=False)
+    if area.ends is not None and (area.ends > 0).any():
+        axes.plot([], [], color=style.GREY, lw=1.2, ls=(0, (1, 2)),
+                  label="beyond the map: its edge goes on")
     axes.set_xlim(0.0, area.range[-1] / 1e3)
     axes.set_ylim(1.06 * deepest, 0.0)
     axes.set_xlabel("horizontal range from the array / km")

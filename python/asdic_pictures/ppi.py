@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from . import bearing_time, processed, signal, style
+from . import bearing_time, processed, scene, signal, style
 
 TITLE = "Plan position, beams on the map"
 SECTORS, COLUMNS = 360, 300
@@ -72,7 +72,8 @@ def draw(data, ping, axes=None, limits=None):
     mesh = axes.pcolormesh(x, y, power[:, : x.shape[1] - 1], cmap=style.MAP, vmin=limits[0],
                            vmax=limits[1], rasterized=True, zorder=1)
     frame(axes, float(np.nanmax(np.hypot(x, y))))
-    handles = found(axes, data, ping, centre) + truth(axes, data, ping, centre)
+    handles = floor(axes, data, centre) + found(axes, data, ping, centre) \
+        + truth(axes, data, ping, centre)
     handles += axes.plot([0.0], [0.0], ls="none", marker="^", ms=8, mfc=style.INK, mec=style.PAPER,
                          label="array", zorder=7)
     if apart > 1.0:
@@ -91,14 +92,27 @@ def frame(axes, far: float) -> None:
     style.image_frame(axes)
     axes.set_facecolor(style.PAPER)
     axes.set_aspect("equal", anchor="W")
-    axes.set_xlim(-1.04 * far, 1.04 * far)
-    axes.set_ylim(-1.04 * far, 1.04 * far)
+    style.compass(axes, far)
     axes.set_xlabel("east of the array / km")
     axes.set_ylabel("north of the array / km")
     t = np.linspace(0.0, 2.0 * np.pi, 361)
     for ring in axes.get_xticks():
         if 0.0 < ring <= far:
             axes.plot(ring * np.sin(t), ring * np.cos(t), color="white", lw=0.5, alpha=0.5, zorder=2)
+
+
+def floor(axes, data, centre) -> list:
+    """Depths of an area's map within the picture, and degrees on the frame. → handles"""
+    known = scene.floor_of(data)
+    if known is None:
+        return []
+    x, y = (known.east - centre[0]) / 1e3, (known.north - centre[1]) / 1e3
+    if known.longitude is not None:
+        style.degree_ticks(axes, x[[0, -1]], known.longitude[[0, -1]], y[[0, -1]],
+                           known.latitude[[0, -1]])
+    far = abs(axes.get_xlim()[0]) / 1.11
+    seen = np.where(np.hypot(x[None, :], y[:, None]) <= far, known.depth, np.nan)
+    return style.depth_lines(axes, x, y, seen, style.depth_levels(seen), 4.0)
 
 
 def found(axes, data, ping, centre) -> list:

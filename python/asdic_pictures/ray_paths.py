@@ -23,6 +23,7 @@ def frame(axes, *sets) -> None:
     first, last = (ranges.min(), ranges.max()) if ranges.size else (0.0, 1.0)
     axes.set_xlim(first, max(last, first + 1e-3))
     sea.draw_boundaries(axes, known)
+    sea.draw_map_end(axes, known)
     axes.set_xlabel("range from the source / km")
     axes.grid(True)
 

@@ -60,6 +60,7 @@ def draw_profile(axes, data):
     if data.has("environment/section_sound_speed"):
         water.section_range, water.section_depth, water.section_speed = (
             data.read(f"environment/section_{part}") for part in ("range", "depth", "sound_speed"))
+    water.map_end = results.map_end(data)
     sea.draw_profile(axes, water, "transect at")
     axes.set_ylabel("depth / m")
 
@@ -98,7 +99,9 @@ def draw(data, ping, axes=None, limits=None):
 
     drawn = max([np.max(r, initial=0.0, where=np.isfinite(r)), hits.max(initial=0.0)]
                 + [p[1] for p in everywhere if p[1] <= 1.1 * reach])
-    right.set_xlim(0.0, max(drawn, 1.0) / 1e3 * 1.02)
+    line = data.rays_line("bottom")
+    known = np.inf if line is None else max(float(np.nanmax(line[0])), drawn)   # no further than the floor
+    right.set_xlim(0.0, min(1.02 * max(drawn, 1.0), known) / 1e3)
     right.set_xlabel("range from the source / km")
     draw_boundaries(data, (left, right))
     style.subtitle(right,

@@ -28,6 +28,7 @@ class Sea:
     section_range: np.ndarray | None = None     # [m] of water that varies with range: [m],
     section_depth: np.ndarray | None = None     # [n] [m],
     section_speed: np.ndarray | None = None     # [m, n] [m/s]
+    map_end: float = np.inf                     # range at which the maps end that it was cut out of [m]
 
 
 @dataclass
@@ -128,6 +129,14 @@ def filetype(path) -> str:
         return ""
 
 
+def map_end(reader) -> float:
+    """Range at which the maps end that a section was cut out of [m]; infinite: they go on."""
+    try:
+        return float(np.ravel(reader.file["environment"].attrs["map_end_m"])[0])
+    except Exception:
+        return np.inf
+
+
 class Reader:
     """An open file that says what is missing."""
 
@@ -176,7 +185,7 @@ class Reader:
                  "section_speed": "section_speed"}
         found = {key: self.array("environment/" + name) for key, name in names.items()
                  if self.has("environment/" + name)}
-        return Sea(**found)
+        return Sea(**found, map_end=map_end(self))
 
 
 def read(path):

@@ -21,6 +21,17 @@ class Things:
 
 
 @dataclass
+class Floor:
+    """The sea floor of an area's map."""
+
+    east: np.ndarray        # [n] [m]
+    north: np.ndarray       # [m] [m]
+    depth: np.ndarray       # [m, n] [m], below 0 on land, NaN: no map
+    longitude: np.ndarray | None = None     # [n] of a line due east [°]
+    latitude: np.ndarray | None = None      # [m] of a line due north [°]
+
+
+@dataclass
 class Scene:
     title: str
     sea: results.Sea
@@ -35,7 +46,7 @@ class Scene:
     source_depth: np.ndarray            # of a run without a sonar [m]
     receivers: tuple                    # depths, ranges [m], whether they are one by one
     origin: str = ""                    # of the map: where on the Earth it is
-    floor: tuple | None = None          # of an area: east [n], north [m], depth [m, n] [m], NaN: no map
+    floor: Floor | None = None          # of an area
     tags: dict = field(default_factory=dict)
 
     @property
@@ -79,13 +90,22 @@ def read(path) -> Scene:
                      style.on_earth(reader.file.attrs), floor_of(reader), reader.tags())
 
 
-def floor_of(reader) -> tuple | None:
-    """The sea floor of an area's map, as files of pings have it."""
-    names = [f"environment/area_{what}" for what in ("east", "north", "depth")]
-    if not all(reader.has(name) for name in names):
+def floor_of(reader) -> Floor | None:
+    """The sea floor of an area's map, of a file of pings or a scene."""
+    array = getattr(reader, "array", None)
+    array = array if callable(array) else reader.read
+    names = {what: f"environment/area_{what}"
+             for what in ("east", "north", "depth", "longitude", "latitude")}
+    found = {what: array(name) for what, name in names.items() if reader.has(name)}
+    if not {"east", "north", "depth"} <= found.keys():
         return None
-    east, north, depth = (reader.array(name) for name in names)
-    if depth.shape != (north.size, east.size) or min(depth.shape) < 2:
-        raise InputError(reader.path, f"environment/area_depth of shape {depth.shape}",
-                         f"{(north.size, east.size)}, 2 by 2 at least")
-    return east, north, depth
+    floor = Floor(**found)
+    if floor.depth.shape != (floor.north.size, floor.east.size) or min(floor.depth.shape) < 2:
+        raise InputError(reader.path, f"environment/area_depth of shape {floor.depth.shape}",
+                         f"{(floor.north.size, floor.east.size)}, 2 by 2 at least")
+    for along, degrees in (("east", "longitude"), ("north", "latitude")):
+        values = getattr(floor, degrees)
+        if values is not None and values.shape != getattr(floor, along).shape:
+            raise InputError(reader.path, f"environment/area_{degrees} of shape {values.shape}",
+                             f"{getattr(floor, along).shape}")
+    return floor

@@ -76,17 +76,31 @@ def draw_floor(axes, scene: Scene, middle, far: float) -> list:
     """Depths of the area's map below the tracks, land brown, grey where no map is. → handles"""
     if scene.floor is None:
         return []
-    east, north, depth = scene.floor
-    x, y = east / 1e3, north / 1e3
+    x, y, depth = scene.floor.east / 1e3, scene.floor.north / 1e3, scene.floor.depth
+    if scene.floor.longitude is not None and scene.floor.latitude is not None:
+        style.degree_ticks(axes, x[[0, -1]], scene.floor.longitude[[0, -1]], y[[0, -1]],
+                           scene.floor.latitude[[0, -1]])
     seen = np.ix_(np.abs(y - middle[1]) <= 1.5 * far, np.abs(x - middle[0]) <= 1.5 * far)
     part = depth[seen] if depth[seen].size > 16 else depth
     made = []
-    for where, shade, label in ((depth < 0.0, style.GROUND, "land"),
-                                (np.isnan(depth), style.NOTHING, "beyond the map")):
-        if where.any():
-            axes.pcolormesh(x, y, np.where(where, 1.0, np.nan), cmap=style.flat_map(shade), vmin=0.0,
-                            vmax=1.0, rasterized=True, zorder=0.5, shading="nearest")
-            made.append(Patch(fc=shade, ec=style.GREY, label=label))
+    water = np.where(depth >= 0.0, depth, np.nan)
+    if np.isfinite(water).any():
+        low, high = (float(f(np.where(part >= 0.0, part, np.nan))) if (part >= 0.0).any() else 0.0
+                     for f in (np.nanmin, np.nanmax))
+        axes.pcolormesh(x, y, water, cmap=style.depth_shades(), vmin=low,
+                        vmax=max(high, low + 1.0), rasterized=True, zorder=0.4, shading="nearest")
+    land, none = depth < 0.0, np.isnan(depth)
+    if land.any():
+        axes.pcolormesh(x, y, np.where(land, 1.0, np.nan), cmap=style.flat_map(style.GROUND), vmin=0.0,
+                        vmax=1.0, rasterized=True, zorder=0.5, shading="nearest")
+        made.append(Patch(fc=style.GROUND, ec=style.GREY, label="land"))
+    if none.any():
+        def inside(east, north):
+            i, j = (np.clip(np.rint((at - line[0]) / (line[1] - line[0])).astype(int), 0, line.size - 1)
+                    for at, line in ((east, x), (north, y)))
+            return none[j, i]
+        made += style.hatched(axes, inside, 1.5 * far, "beyond the map: its edge goes on", 36, True, middle,
+                              0.6)
     return style.depth_lines(axes, x, y, depth, style.depth_levels(part), 1.5) + made
 
 
@@ -134,6 +148,7 @@ def draw_section(axes, scene: Scene) -> None:
                   **mark("transmitters", 0))
         axes.set_xlabel("range from the source / km")
     seas.draw_boundaries(axes, known)
+    seas.draw_map_end(axes, known)
     axes.grid(True)
 
 

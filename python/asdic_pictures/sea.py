@@ -60,12 +60,36 @@ def draw_boundaries(axes, sea) -> None:
         axes.plot(r, sea.surface, color=style.BLUE, lw=1.0, zorder=3.1)
 
 
+def draw_map_end(axes, sea) -> None:
+    """Where the maps end that a section was cut out of: from there on it has their edge's depth."""
+    first, last = axes.get_xlim()
+    at = sea.map_end / 1e3
+    if not first <= at < last:
+        return
+    axes.axvline(at, color=style.INK, lw=1.0, ls=(0, (4, 3)), zorder=3.4,
+                 path_effects=list(style.OVER_MAP))
+    left = at > first + 0.6 * (last - first)
+    axes.annotate("the map ends: its edge goes on", (at, 0.03), (-4.0 if left else 4.0, 0.0),
+                  ("data", "axes fraction"), "offset points", ha="right" if left else "left",
+                  fontsize=8, color=style.INK, zorder=3.5, path_effects=list(style.OVER_MAP))
+
+
 def profiles(sea):
-    """Range [m], depth [m] and speed [m/s] of each profile: those of a section, or the one."""
+    """Range [m], depth [m] and speed [m/s] of each profile: those of a section as far as the maps and
+    the rest of the file go, with the one there (straight between two); or the one.
+    """
     if sea.section_speed is None:
         return [(0.0, sea.depth, sea.sound_speed)]
-    return [(float(r), sea.section_depth, c)
-            for r, c in zip(sea.section_range, sea.section_speed)]
+    ranges, speeds = np.asarray(sea.section_range, float), np.asarray(sea.section_speed, float)
+    last = min(sea.map_end, np.inf if sea.boundary_range is None else float(sea.boundary_range.max()))
+    if last <= ranges[0]:
+        ranges, speeds = ranges[:1], speeds[:1]
+    elif last < ranges[-1]:
+        k = int(np.searchsorted(ranges, last))      # ranges[k - 1] < last <= ranges[k]
+        share = (last - ranges[k - 1]) / (ranges[k] - ranges[k - 1])
+        there = speeds[k - 1] + share * (speeds[k] - speeds[k - 1])
+        ranges, speeds = np.append(ranges[:k], last), np.vstack([speeds[:k], there])
+    return [(float(r), sea.section_depth, c) for r, c in zip(ranges, speeds)]
 
 
 MOST_PROFILES = 6
@@ -82,14 +106,16 @@ def draw_profile(axes, sea, at: str = "at range") -> None:
     shades = matplotlib.colormaps["plasma"](
         np.linspace(0.05, 0.8, len(several)) + (0.2 if style.PAPER != "white" else 0.0))
     speeds = []
+    deepest = np.nanmax(sea.depth) if sea.depth is not None else np.inf   # of the axes
     for shade_of_range, (r, z, c) in zip(shades, several):
         alone = len(several) == 1
-        label = None if alone else f"{r / 1e3:g} km"
+        label = None if alone else f"{r / 1e3:.4g} km"
         axes.plot(c, z, color=style.BLUE if alone else shade_of_range, lw=1.8 if alone else 1.3,
                   label=label)
-        speeds.append(c)
+        drawn = np.asarray(z) <= deepest
+        speeds.append(np.asarray(c)[drawn] if drawn.any() else c)
     axes.set_xlabel("sound speed\nm/s")
-    low, high = np.nanmin(speeds), np.nanmax(speeds)
+    low, high = np.nanmin(np.concatenate(speeds)), np.nanmax(np.concatenate(speeds))
     room = max(0.12 * (high - low), 5.0)
     axes.set_xlim(low - room, high + room)
     axes.xaxis.set_major_locator(style.ticker.MaxNLocator(2, integer=True))

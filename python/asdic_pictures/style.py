@@ -15,10 +15,11 @@ import matplotlib
 import numpy as np
 from matplotlib import patheffects, ticker
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.lines import Line2D
-from matplotlib.patches import Rectangle
+from matplotlib.patches import Patch, Rectangle
 from matplotlib.textpath import text_to_path
 from matplotlib.transforms import ScaledTranslation
 
@@ -30,12 +31,12 @@ LIGHT = dict(
     INK="#222222", GREY="#8a8a8a", NOTE="#555555", PAPER="white", GRID="#e8e8e8",
     NOTHING="#ececec", BLUE="#0072B2", VERMILION="#D55E00", GREEN="#009E73", SLATE="#6f7fa6",
     BROWN="#6b4423", ORANGE="#E69F00", PURPLE="#CC79A7", SKY="#56B4E9", GROUND="#cdbfa9",
-    GROUND_INK="#5d4f38", WATER="#eaf3f9", MAP="viridis", LOSS_MAP="viridis_r", DIVERGING="RdBu_r")
+    GROUND_INK="#5d4f38", WATER="#eaf3f9", DEPTHS=("#f4f9fc", "#9fc3de"), MAP="viridis", LOSS_MAP="viridis_r", DIVERGING="RdBu_r")
 DARK = dict(
     INK="#e8e8e8", GREY="#9a9a9a", NOTE="#b8b8b8", PAPER="#14171c", GRID="#2c313a",
     NOTHING="#2a2e35", BLUE="#4fa8e0", VERMILION="#ff8840", GREEN="#2fc99b", SLATE="#93a4d0",
     BROWN="#c99a6b", ORANGE="#f2b632", PURPLE="#e39fc6", SKY="#8fd0f7", GROUND="#5b4d38",
-    GROUND_INK="#d8c8ab", WATER="#182430", MAP="viridis", LOSS_MAP="viridis_r",
+    GROUND_INK="#d8c8ab", WATER="#182430", DEPTHS=("#1b252f", "#2c5273"), MAP="viridis", LOSS_MAP="viridis_r",
     DIVERGING="RdBu_r")
 THEMES = {"light": LIGHT, "dark": DARK}
 globals().update(LIGHT)
@@ -136,8 +137,9 @@ def colour(target: int) -> str:
 
 
 def colours(count: int) -> list:
-    """Shades of the common map, one after the other."""
-    return [matplotlib.colormaps[MAP](x) for x in np.linspace(0.0, 0.9, count)]
+    """Shades of the common map, one after the other, none of which is lost on the page."""
+    ends = (0.0, 0.9) if _theme == "light" else (0.28, 1.0)
+    return [matplotlib.colormaps[MAP](x) for x in np.linspace(*ends, count)]
 
 
 def flat_map(shade):
@@ -428,6 +430,78 @@ def depth_lines(axes, x, y, depth, levels, zorder: float = 3.0) -> list:
         text.set_path_effects(halo)
         text.set_zorder(zorder + 0.1)
     return [Line2D([], [], color=INK, lw=0.8, label="depth of the sea floor / m")]
+
+
+def depth_shades():
+    """Of the sea floor below marks: faint, the deeper the darker."""
+    return matplotlib.colors.LinearSegmentedColormap.from_list("depths", list(DEPTHS))
+
+
+def hatched(axes, inside, far: float, label: str, lines: int = 45, falling: bool = False,
+            middle=(0.0, 0.0), zorder: float = 2.5) -> list:
+    """Strokes in a halo over part of a map, which are seen on any colour. → handles
+
+    \\param inside  (x, y) → where it is that part   \\param far  half a side of the square that has it
+    \\param lines  across that square
+    """
+    step, along = 2.0 * far / lines, np.linspace(-far, far, 30 * lines)
+    made = []
+    for k in range(-lines, lines + 1):
+        y = (-along if falling else along) + k * step
+        seen = inside(along + middle[0], y + middle[1]) & (np.abs(y) <= far)
+        cuts = np.flatnonzero(np.diff(np.concatenate([[False], seen, [False]]).astype(int)))
+        for first, last in zip(cuts[::2], cuts[1::2]):
+            if last - first > 1:
+                made.append([(along[i] + middle[0], y[i] + middle[1]) for i in (first, last - 1)])
+    if not made:
+        return []
+    strokes = LineCollection(made, colors=[INK], linewidths=0.7, zorder=zorder,
+                             path_effects=[patheffects.withStroke(linewidth=1.8, foreground=PAPER)])
+    axes.add_collection(strokes, autolim=False)
+    return [Patch(fc="none", ec=INK, hatch=("\\\\" if falling else "//") * 2, lw=0.0, label=label)]
+
+
+def compass(axes, far: float) -> None:
+    """True bearings around a map whose circle ends at `far`."""
+    axes.set_xlim(-1.11 * far, 1.11 * far)
+    axes.set_ylim(-1.11 * far, 1.11 * far)
+    for bearing in range(0, 360, 30):
+        b = np.radians(bearing)
+        axes.plot(*(np.outer([np.sin(b), np.cos(b)], [1.0, 1.012]) * far), color=GREY, lw=0.8, zorder=4)
+        axes.text(1.055 * far * np.sin(b), 1.055 * far * np.cos(b),
+                  "N" if bearing == 0 else f"{bearing:03d}°", ha="center", va="center", color=NOTE,
+                  fontsize=9 if bearing == 0 else 7, fontweight="bold" if bearing == 0 else "normal",
+                  zorder=4)
+
+
+def degree_text(value: float, places: int, words: str) -> str:
+    """62.75° W. \\param words  "NS" or "EW\""""
+    value = (value + 180.0) % 360.0 - 180.0 if words == "EW" else value
+    rounded = round(value, places)
+    return f"{abs(rounded):.{places}f}°" + (f" {words[int(rounded < 0.0)]}" if rounded else "")
+
+
+def degree_ticks(axes, east, longitude, north, latitude) -> None:
+    """Longitudes above a map and latitudes to its right. \\param east, north  two places on the axes
+    \\param longitude, latitude  of these [°]
+    """
+    for side, (a, b), (u, v), words in (("top", east, longitude, "EW"), ("right", north, latitude, "NS")):
+        rate = (v - u) / (b - a)
+        if not np.isfinite(rate) or rate == 0.0:
+            return
+        there, back = (lambda x, a=a, u=u, r=rate: u + (x - a) * r), (lambda w, a=a, u=u, r=rate: a + (w - u) / r)
+        other = (axes.secondary_xaxis if side == "top" else axes.secondary_yaxis)(
+            side, functions=(there, back))
+        axis = other.xaxis if side == "top" else other.yaxis
+        axis.set_major_locator(ticker.MaxNLocator(6, steps=[1, 2, 5, 10]))
+        low, high = sorted(there(x) for x in (axes.get_xlim() if side == "top" else axes.get_ylim()))
+        ticks = axis.get_major_locator().tick_values(low, high)
+        places = max(0, int(np.ceil(-np.log10(ticks[1] - ticks[0]) - 1e-9)))
+        axis.set_major_formatter(ticker.FuncFormatter(
+            lambda x, _, n=places, w=words: degree_text(x, n, w)))
+        other.tick_params(direction="out", length=3, labelsize=7.5, pad=2)
+        for spine in other.spines.values():
+            spine.set_visible(False)
 
 
 def image(axes, x_edges, y_edges, values, limits):

@@ -89,6 +89,7 @@ def frame(axes, field, source: int) -> None:
     first, last = field.range.min() / 1e3, field.range.max() / 1e3
     axes.set_xlim(min(first, 0.0), last if last > first else first + 1.0)
     sea.draw_boundaries(axes, field.sea)
+    sea.draw_map_end(axes, field.sea)
     axes.plot(0.0, field.source_depths[source], marker="D", ms=7, mfc=style.INK, mec=style.PAPER,
               mew=1.2, zorder=6, clip_on=False)
 

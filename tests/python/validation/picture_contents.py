@@ -14,6 +14,7 @@ sys.path[:0] = [str(ROOT / "python"), str(ROOT / "tests" / "support")]
 import make_ping_file as synthetic  # noqa: E402
 from asdic_pictures import (area, bearing_time, levels, matched_filter, rays,  # noqa: E402
                             results, scene, scene_pictures, style, sweep)
+from asdic_pictures import sea as seas  # noqa: E402
 from asdic_pictures.data import PingFile  # noqa: E402
 from matplotlib.colors import to_hex  # noqa: E402
 
@@ -233,6 +234,44 @@ class AreaMaps(Case):
                  and c.get_path_effects()]
         self.assertGreater(len(lines), 0)
 
+    def test_cells_beyond_the_map_are_hatched(self):
+        """East of 40 km; the strokes fall, those of uncertain cells rise. Which map ends is told."""
+        found = self.area()
+        bearing = np.radians(found.bearing)[:, None]
+        for number, name in area.ENDED.items():
+            found.ends = np.where(found.range * np.sin(bearing) > 40e3, number, 0)
+            for what in ("signal_excess", "reverberation_level", "sea_floor") if number == 1 else ("echo_level",):
+                axes = area.draw(found, what).axes[0]
+                self.assertIn(f"beyond the map of {name}: its edge goes on", self.labels(axes.figure))
+                strokes = [c for c in axes.collections if type(c).__name__ == "LineCollection"
+                           and len(c.get_path_effects()) == 1 and c.get_zorder() == 2.5]
+                self.assertEqual(len(strokes), 1)
+                ends = np.array(strokes[0].get_segments())
+                cell = 80.0 / 50.0 + 80.0 * np.radians(10.0)    # at the corner of one
+                self.assertGreater(ends[..., 0].min(), 40.0 - cell)
+                self.assertGreater(ends[..., 0].max(), 75.0)
+        self.assertIn("beyond the map: its edge goes on", self.labels(area.draw(found, "sections")))
+        for ends in (None, np.zeros((36, 50))):
+            found.ends = ends
+            for what in ("sea_floor", "sections"):
+                self.assertFalse(any("beyond" in told for told in self.labels(area.draw(found, what))))
+
+    def test_degrees_on_the_frame_are_those_of_the_cells(self):
+        found = self.area()
+        bearing = np.radians(found.bearing)[:, None]
+        x, y = found.range * np.sin(bearing), found.range * np.cos(bearing)
+        latitude = 60.0 + y / 111e3
+        found.earth = latitude, 179.9 + x / (111e3 * np.cos(np.radians(latitude)))
+        axes = area.draw(found, "echo_level").axes[0]
+        axes.figure.canvas.draw()
+        over, beside = axes.child_axes
+        low, high = np.array(axes.get_xlim()) * 1e3
+        per_degree = 111e3 * np.cos(np.radians(60.0))
+        np.testing.assert_allclose(over.get_xlim(), 179.9 + np.array([low, high]) / per_degree, atol=1e-3)
+        np.testing.assert_allclose(beside.get_ylim(), 60.0 + np.array([low, high]) / 111e3, atol=1e-6)
+        self.assertTrue(any(t.get_text().endswith("° W") for t in over.get_xticklabels()))
+        self.assertEqual(area.draw(self.area(), "echo_level").axes[0].child_axes, [])
+
     def test_the_maps_end_and_bearings_are_told(self):
         attributes = {"warnings": [b"propagation: rays", b"environment.area: sound is followed to 80 km, "
                                    b"and muir.nc ends 20.1 km away at 255 degrees; beyond it its edge goes on"]}
@@ -249,20 +288,87 @@ class AreaMaps(Case):
 
 class Geometry(Case):
     def test_depths_of_an_area_are_on_the_map(self):
-        x = np.linspace(-10e3, 10e3, 21)
-        depth = np.tile(np.where(x > 9e3, np.nan, -1000.0 * x / 4e3 + 500.0), (21, 1))
+        x = np.linspace(-5e3, 5e3, 41)
+        depth = np.tile(np.where(x > 2.6e3, np.nan, -1000.0 * x / 4e3 + 500.0), (41, 1))
         track = np.zeros((1, 2, 3))
         things = {kind: scene.Things([kind], track + [0.0, where, 50.0])
                   for kind, where in (("platforms", 0.0), ("transmitters", 0.0), ("targets", 4e3))}
         sea = results.Sea(np.linspace(0.0, 5e3, 5), np.zeros(5), np.full(5, 500.0),
                           np.array([0.0, 500.0]), np.array([1500.0, 1500.0]))
         made = scene.Scene("made", sea, 1e3, 0.0, 5.0, 1, things, np.zeros(1), np.full(1, np.nan), [],
-                           np.zeros(0), (np.zeros(0), np.zeros(0), False), "", (x, x, depth))
+                           np.zeros(0), (np.zeros(0), np.zeros(0), False), "",
+                           scene.Floor(x, x, depth, -20.0 + x / 6e4, 50.0 + x / 11e4))
         told = self.labels(scene_pictures.geometry(made))
-        for words in ("depth of the sea floor / m", "land", "beyond the map"):
+        for words in ("depth of the sea floor / m", "land", "beyond the map: its edge goes on"):
             self.assertIn(words, told)
+        # degrees on the frame, where the map has them
+        axes = scene_pictures.geometry(made).axes[0]
+        axes.figure.canvas.draw()
+        over, beside = axes.child_axes
+        (low, high), (south, north) = np.array(axes.get_xlim()) * 1e3, np.array(axes.get_ylim()) * 1e3
+        np.testing.assert_allclose(over.get_xlim(), [-20.0 + low / 6e4, -20.0 + high / 6e4])
+        np.testing.assert_allclose(beside.get_ylim(), [50.0 + south / 11e4, 50.0 + north / 11e4])
         made.floor = None
-        self.assertNotIn("land", self.labels(scene_pictures.geometry(made)))
+        bare = scene_pictures.geometry(made)
+        self.assertNotIn("land", self.labels(bare))
+        self.assertEqual(bare.axes[0].child_axes, [])
+
+    def test_degrees_are_words(self):
+        for value, places, words, told in ((-62.75, 2, "EW", "62.75° W"), (181.5, 1, "EW", "178.5° W"),
+                                           (-0.001, 2, "NS", "0.00°"), (0.5, 1, "NS", "0.5° N"),
+                                           (-33.0, 0, "NS", "33° S"), (180.0, 0, "EW", "180° W")):
+            self.assertEqual(style.degree_text(value, places, words), told)
+
+    def test_strokes_are_where_they_belong_and_can_be_seen(self):
+        """All of a half plane, nothing of the other; in ink within a halo of paper."""
+        for falling in (False, True):
+            with style.look("dark"):
+                fig, axes = style.figure("strokes")
+                made = style.hatched(axes, lambda x, y: x + y > 1.0, 4.0, "there", 20, falling)
+                self.assertEqual([h.get_label() for h in made], ["there"])
+                strokes = axes.collections[0]
+                self.assertEqual(to_hex(strokes.get_colors()[0]), style.INK)
+                self.assertEqual(len(strokes.get_path_effects()), 1)
+            ends = np.array(strokes.get_segments())
+            self.assertGreaterEqual(ends.sum(axis=-1).min(), 1.0)
+            self.assertLessEqual(np.abs(ends).max(), 4.0)
+            slope = np.diff(ends, axis=1)[:, 0]
+            np.testing.assert_allclose(slope[:, 1] / slope[:, 0], -1.0 if falling else 1.0)
+        fig, axes = style.figure("none")
+        self.assertEqual(style.hatched(axes, lambda x, y: x > 5.0, 4.0, "there"), [])
+
+
+class Profiles(Case):
+    """Of water that varies with range: those within the map, with that at its end."""
+
+    def sea(self, map_end=np.inf):
+        z = np.array([0.0, 100.0, 5000.0])
+        speeds = np.array([1500.0, 1510.0, 1540.0])[:, None] + np.array([0.0, -10.0, 300.0])
+        return results.Sea(np.linspace(0.0, 30e3, 5), np.zeros(5), np.full(5, 100.0), z[:2], speeds[0, :2],
+                           np.array([0.0, 20e3, 40e3]), z, speeds, map_end)
+
+    def test_none_is_beyond_the_map(self):
+        for end, ranges, last in ((np.inf, [0.0, 20e3, 30e3], 1525.0), (10e3, [0.0, 10e3], 1505.0),
+                                  (20e3, [0.0, 20e3], 1510.0), (0.0, [0.0], 1500.0)):
+            found = seas.profiles(self.sea(end))
+            self.assertEqual([r for r, _, _ in found], ranges)
+            self.assertAlmostEqual(found[-1][2][0], last)
+
+    def test_the_axis_is_that_of_the_water(self):
+        """1500 to 1525 m/s between surface and bottom; the 1800 m/s of 5 km are below the axes."""
+        fig, axes = style.figure("profile")
+        seas.draw_profile(axes, self.sea())
+        low, high = axes.get_xlim()
+        self.assertTrue(1480.0 < low < 1490.0 and 1525.0 < high < 1535.0, (low, high))
+        told = [t.get_text() for t in axes.get_legend().get_texts()]
+        self.assertEqual(told, ["0 km", "20 km", "30 km"])
+
+    def test_where_the_map_ends_is_told_within_the_axes_alone(self):
+        for end, words in ((10e3, 1), (np.inf, 0), (50e3, 0)):
+            fig, axes = style.figure("section")
+            axes.set_xlim(0.0, 30.0)
+            seas.draw_map_end(axes, self.sea(end))
+            self.assertEqual(len([t for t in axes.texts if "the map ends" in t.get_text()]), words)
 
 
 if __name__ == "__main__":
