@@ -312,8 +312,14 @@ void write_transect(Hdf5File& file, const Scenario& scenario) {
 void write_area(Hdf5File& file, const Scenario& scenario) {
   const Area& area = *scenario.area;
   const Vec2 middle = scenario.platforms[0].track.at(0.0).position.head<2>();
-  const double heard = 0.5 * 1500.0 * end_of_record(scenario);
-  const double step = std::max(0.25 * area.spacing(middle), heard / 100.0);
+  double away = 0.0;  // that a platform ever is
+  for (const Platform& platform : scenario.platforms)
+    for (int ping = 0; ping < scenario.pings.count; ++ping) {
+      const Vec3 place = platform.track.at(ping * scenario.pings.interval).position;
+      away = std::max(away, (place.head<2>() - middle).norm());
+    }
+  const double heard = away + 0.5 * 1500.0 * end_of_record(scenario);
+  const double step = std::max(0.1 * area.spacing(middle), heard / 100.0);
   const auto lines = static_cast<int>(std::ceil(heard / step));
   std::vector<double> east, north, depth;
   for (int i = -lines; i <= lines; ++i) {

@@ -191,7 +191,7 @@ def beyond_the_map(axes, area: Area) -> list:
     gone = area.ends > 0
     names = [word for number, word in ENDED.items() if (area.ends == number).any()]
     return style.hatched(axes, among(area, gone), area.range[-1] / 1e3,
-                         f"beyond the map of {' and '.join(names)}: its edge goes on", 24, True)
+                         f"beyond the map of {' and '.join(names)}", 24, True)
 
 
 def among(area: Area, cells):

@@ -112,7 +112,10 @@ def floor(axes, data, centre) -> list:
                            known.latitude[[0, -1]])
     far = abs(axes.get_xlim()[0]) / 1.11
     seen = np.where(np.hypot(x[None, :], y[:, None]) <= far, known.depth, np.nan)
-    return style.depth_lines(axes, x, y, seen, style.depth_levels(seen), 4.0)
+    gone = style.hatched(
+        axes, lambda x, y: known.ended(1e3 * x + centre[0], 1e3 * y + centre[1]) & (np.hypot(x, y) <= far),
+        far, "beyond the map: its edge goes on", 24, True)
+    return style.depth_lines(axes, x, y, seen, style.depth_levels(seen), 4.0) + gone
 
 
 def found(axes, data, ping, centre) -> list:

@@ -30,6 +30,14 @@ class Floor:
     longitude: np.ndarray | None = None     # [n] of a line due east [°]
     latitude: np.ndarray | None = None      # [m] of a line due north [°]
 
+    def ended(self, east, north):
+        """Whether places [m] are beyond the map; never where the file does not say."""
+        i, j = (np.rint((np.asarray(at) - line[0]) / (line[1] - line[0])).astype(int)
+                for at, line in ((east, self.east), (north, self.north)))
+        known = (i >= 0) & (i < self.east.size) & (j >= 0) & (j < self.north.size)
+        near = np.clip(j, 0, self.north.size - 1), np.clip(i, 0, self.east.size - 1)
+        return known & np.isnan(self.depth[near])
+
 
 @dataclass
 class Scene:

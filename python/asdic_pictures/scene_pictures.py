@@ -95,13 +95,10 @@ def draw_floor(axes, scene: Scene, middle, far: float) -> list:
                         vmax=1.0, rasterized=True, zorder=0.5, shading="nearest")
         made.append(Patch(fc=style.GROUND, ec=style.GREY, label="land"))
     if none.any():
-        def inside(east, north):
-            i, j = (np.clip(np.rint((at - line[0]) / (line[1] - line[0])).astype(int), 0, line.size - 1)
-                    for at, line in ((east, x), (north, y)))
-            return none[j, i]
-        made += style.hatched(axes, inside, 1.5 * far, "beyond the map: its edge goes on", 36, True, middle,
-                              0.6)
-    return style.depth_lines(axes, x, y, depth, style.depth_levels(part), 1.5) + made
+        made += style.hatched(axes, lambda x, y: scene.floor.ended(1e3 * x, 1e3 * y), 1.5 * far,
+                              "beyond the map: its edge goes on", 36, True, middle, 0.6)
+    return style.depth_lines(axes, x, y, depth, style.depth_levels(part), 1.5,
+                             lambda at: (np.abs(at - middle) <= 1.2 * far).all(axis=1)) + made
 
 
 def along_section(scene: Scene, places) -> np.ndarray:
@@ -140,9 +137,14 @@ def draw_section(axes, scene: Scene) -> None:
     else:
         z, r, one_by_one = scene.receivers
         if z.size:
-            zz, rr = (z, r) if one_by_one else (np.repeat(z, r.size), np.tile(r, z.size))
-            few = np.linspace(0, zz.size - 1, min(zz.size, 2000)).astype(int)
-            axes.plot(rr[few] / 1e3, zz[few], ls="none", marker=".", ms=1.5, color=style.SLATE,
+            if one_by_one:
+                every = -(-z.size // 2000)
+                zz, rr = z[::every], r[::every]
+            else:   # whole rows and columns
+                every = int(np.ceil(np.sqrt(z.size * r.size / 2500.0)))
+                z, r = z[::min(every, z.size)], r[::min(every, r.size)]
+                zz, rr = np.repeat(z, r.size), np.tile(r, z.size)
+            axes.plot(rr / 1e3, zz, ls="none", marker=".", ms=1.5, color=style.SLATE,
                       zorder=2.5)
         axes.plot(np.zeros(scene.source_depth.size), scene.source_depth, zorder=6,
                   **mark("transmitters", 0))

@@ -418,15 +418,43 @@ def depth_levels(depth) -> np.ndarray:
     return np.arange(np.ceil(low / step) * step, high, step)
 
 
-def depth_lines(axes, x, y, depth, levels, zorder: float = 3.0) -> list:
-    """Contours of the sea floor, in a halo that keeps them readable on any colour. → handles"""
+def label_places(segments, inside, least: float) -> list:
+    """Of the contours of each level the middles of the two longest parts within a picture that are no
+    shorter than `least`. \\param segments  [level][segment] of [n, 2]
+    \\param inside  points [n, 2] → where they are
+    """
+    places = []
+    for lines in segments:
+        parts = []
+        for line in lines:
+            seen = np.flatnonzero(inside(line))
+            for part in np.split(seen, np.flatnonzero(np.diff(seen) > 1) + 1):
+                if part.size < 3:
+                    continue
+                way = np.append(0.0, np.cumsum(np.hypot(*np.diff(line[part], axis=0).T)))
+                if way[-1] >= least:
+                    middle = line[part[int(np.searchsorted(way, 0.5 * way[-1]))]]
+                    parts.append((float(way[-1]), tuple(middle.tolist())))
+        places += [place for _, place in sorted(parts, reverse=True)[:2]]
+    return places
+
+
+def depth_lines(axes, x, y, depth, levels, zorder: float = 3.0, inside=None) -> list:
+    """Contours of the sea floor, in a halo that keeps them readable on any colour. → handles
+
+    \\param inside  points [n, 2] → those among which a level has its number; none: wherever there is room
+    """
     if not np.size(levels):
         return []
     made = axes.contour(x, y, depth, levels=levels, colors=[INK], linewidths=0.8, zorder=zorder)
     halo = [patheffects.withStroke(linewidth=2.0, foreground=PAPER)]
     for part in getattr(made, "collections", [made]):   # one a level before matplotlib 3.8
         part.set_path_effects(halo)
-    for text in axes.clabel(made, fmt="%g", fontsize=7):
+    least = 0.12 * abs(np.subtract(*axes.get_xlim()))
+    where = {} if inside is None else {"manual": label_places(made.allsegs, inside, least)}
+    if where == {"manual": []}:
+        return [Line2D([], [], color=INK, lw=0.8, label="depth of the sea floor / m")]
+    for text in axes.clabel(made, fmt="%g", fontsize=7, **where):
         text.set_path_effects(halo)
         text.set_zorder(zorder + 0.1)
     return [Line2D([], [], color=INK, lw=0.8, label="depth of the sea floor / m")]

@@ -111,7 +111,7 @@ def write(path, s: Settings):
 
 def write_root(f, s, result):
     n = result["pressure"].shape[2]
-    f.attrs.update(filetype="asdic ping", version="1.0" if s.version == 1 else "3.2",
+    f.attrs.update(filetype="asdic ping", version="1.0" if s.version == 1 else "3.3",
                    title="Synthetic ping in deep water", program_version="0.1.0",
                    build="none", seed=s.seed, scenario_sha256="0" * 64,
                    complete=int((s.pings_requested or s.pings) == s.pings),

@@ -242,7 +242,7 @@ class AreaMaps(Case):
             found.ends = np.where(found.range * np.sin(bearing) > 40e3, number, 0)
             for what in ("signal_excess", "reverberation_level", "sea_floor") if number == 1 else ("echo_level",):
                 axes = area.draw(found, what).axes[0]
-                self.assertIn(f"beyond the map of {name}: its edge goes on", self.labels(axes.figure))
+                self.assertIn(f"beyond the map of {name}", self.labels(axes.figure))
                 strokes = [c for c in axes.collections if type(c).__name__ == "LineCollection"
                            and len(c.get_path_effects()) == 1 and c.get_zorder() == 2.5]
                 self.assertEqual(len(strokes), 1)
@@ -318,6 +318,21 @@ class Geometry(Case):
                                            (-0.001, 2, "NS", "0.00°"), (0.5, 1, "NS", "0.5° N"),
                                            (-33.0, 0, "NS", "33° S"), (180.0, 0, "EW", "180° W")):
             self.assertEqual(style.degree_text(value, places, words), told)
+
+    def test_depths_have_their_numbers_within_the_picture(self):
+        """A contour of four corners: its longest part inside; none of what is short or outside."""
+        square = np.array([[x, 0.0] for x in range(11)] + [[10.0, y] for y in range(1, 11)])
+        found = style.label_places([[square], [square[:2]], [square + 50.0]], lambda at: (at[:, 0] < 8.5), 3.0)
+        self.assertEqual(found, [(4.0, 0.0)])
+        x = np.linspace(-50.0, 50.0, 101)
+        fig, axes = style.figure("contours")
+        axes.set_xlim(-10.0, 10.0)
+        axes.set_ylim(-10.0, 10.0)
+        style.depth_lines(axes, x, x, np.tile(1000.0 + x, (101, 1)), [960.0, 1000.0, 1005.0],
+                          inside=lambda at: (np.abs(at) < 9.0).all(axis=1))
+        self.assertEqual(sorted(t.get_text() for t in axes.texts), ["1000", "1005"])
+        for t in axes.texts:
+            self.assertLess(np.abs(t.get_position()).max(), 10.0)
 
     def test_strokes_are_where_they_belong_and_can_be_seen(self):
         """All of a half plane, nothing of the other; in ink within a halo of paper."""
