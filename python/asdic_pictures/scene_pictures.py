@@ -7,7 +7,7 @@ from matplotlib.patches import Patch, Wedge
 
 from . import sea as seas
 from . import style
-from .scene import Scene
+from .scene import Floor, Scene
 
 MARKS = {"platforms": "s", "transmitters": "D", "arrays": "^", "targets": "o"}
 SIZES = {"platforms": 6, "transmitters": 7, "arrays": 8, "targets": 9}
@@ -69,17 +69,17 @@ def draw_map(axes, scene: Scene) -> list:
     axes.grid(True)
     for side in axes.spines.values():
         side.set_visible(True)
-    return draw_floor(axes, scene, middle, far)
+    return draw_floor(axes, scene.floor, middle, far)
 
 
-def draw_floor(axes, scene: Scene, middle, far: float) -> list:
+def draw_floor(axes, floor: Floor | None, middle, far: float) -> list:
     """Depths of the area's map below the tracks, land brown, grey where no map is. → handles"""
-    if scene.floor is None:
+    if floor is None:
         return []
-    x, y, depth = scene.floor.east / 1e3, scene.floor.north / 1e3, scene.floor.depth
-    if scene.floor.longitude is not None and scene.floor.latitude is not None:
-        style.degree_ticks(axes, x[[0, -1]], scene.floor.longitude[[0, -1]], y[[0, -1]],
-                           scene.floor.latitude[[0, -1]])
+    x, y, depth = floor.east / 1e3, floor.north / 1e3, floor.depth
+    if floor.longitude is not None and floor.latitude is not None:
+        style.degree_ticks(axes, x[[0, -1]], floor.longitude[[0, -1]], y[[0, -1]],
+                           floor.latitude[[0, -1]])
     seen = np.ix_(np.abs(y - middle[1]) <= 1.5 * far, np.abs(x - middle[0]) <= 1.5 * far)
     part = depth[seen] if depth[seen].size > 16 else depth
     made = []
@@ -95,7 +95,7 @@ def draw_floor(axes, scene: Scene, middle, far: float) -> list:
                         vmax=1.0, rasterized=True, zorder=0.5, shading="nearest")
         made.append(Patch(fc=style.GROUND, ec=style.GREY, label="land"))
     if none.any():
-        made += style.hatched(axes, lambda x, y: scene.floor.ended(1e3 * x, 1e3 * y), 1.5 * far,
+        made += style.hatched(axes, lambda x, y: floor.ended(1e3 * x, 1e3 * y), 1.5 * far,
                               "beyond the map: its edge goes on", 36, True, middle, 0.6)
     return style.depth_lines(axes, x, y, depth, style.depth_levels(part), 1.5,
                              lambda at: (np.abs(at - middle) <= 1.2 * far).all(axis=1)) + made

@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.lines import Line2D
 
-from . import processed, style
+from . import processed, scene, scene_pictures, style
 
 TITLE = "Tracks and truth"
 
@@ -22,12 +22,12 @@ def draw(data, ping, axes=None, limits=None):
     tracks = processed.tracks(data)
     on_map = any(np.isfinite(t["x"]).any() for t in tracks)
     fig, axes = style.figure(TITLE, 7.4 if on_map else 5.6, axes)
-    (draw_map if on_map else draw_ranges)(axes, data, tracks)
+    floor = (draw_map if on_map else draw_ranges)(axes, data, tracks) or []
     axes.grid(True)
     hits = sum(int(np.sum(t["detection"] >= 0)) for t in tracks)
     style.subtitle(axes, f"{data.title or data.path}  ·  {len(tracks)} tracks, {hits} detections "
                          f"in them{data.of_array}")
-    style.legend_below(axes, legend(data, tracks), ncol=4)
+    style.legend_below(axes, legend(data, tracks) + floor, ncol=4)
     return fig
 
 
@@ -51,7 +51,8 @@ def true_places(data):
             for i in range(len(data.target_names))]
 
 
-def draw_map(axes, data, tracks):
+def draw_map(axes, data, tracks) -> list:
+    """→ handles of the sea floor of an area's map"""
     for index, (_, place) in enumerate(true_places(data)):
         axes.plot(place[:, 0] / 1e3, place[:, 1] / 1e3, color=style.colour(index), lw=6, alpha=0.25,
                   solid_capstyle="round", zorder=2)
@@ -64,6 +65,11 @@ def draw_map(axes, data, tracks):
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_xlabel(style.east_of(style.on_earth(data.file.attrs)))
     axes.set_ylabel("north / km")
+    ends = np.array([axes.get_xlim(), axes.get_ylim()])
+    axes.set_xlim(*ends[0])
+    axes.set_ylim(*ends[1])
+    return scene_pictures.draw_floor(axes, scene.floor_of(data), ends.mean(axis=1),
+                                     0.5 * float(np.ptp(ends, axis=1).max()))
 
 
 def draw_ranges(axes, data, tracks):

@@ -311,10 +311,11 @@ class OverAMap(unittest.TestCase):
                 self.assertAlmostEqual(depth[middle], here, delta=0.01)
         with h5py.File(path) as f:
             self.assert_map_end(f["environment"].attrs["map_end_m"], (6000.0, -3000.0), 90.0)
-        figure = pictures.geometry(scenario)
-        told = [t.get_text() for a in figure.axes if a.get_legend() for t in a.get_legend().get_texts()]
-        self.assertIn("beyond the map: its edge goes on", told)
-        self.assertIn("depth of the sea floor / m", told)
+        for figure in (pictures.ppi(self.folder / "map.h5"), pictures.geometry(scenario)):
+            told = [t.get_text() for a in figure.axes if a.get_legend() for t in a.get_legend().get_texts()]
+            self.assertIn("beyond the map: its edge goes on", told)
+            self.assertIn("depth of the sea floor / m", told)
+            self.assertEqual(len(figure.axes[0].child_axes), 2)     # longitudes, latitudes
         self.assertTrue(any("the map ends" in t.get_text() for t in figure.axes[1].texts))
 
 
