@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "io/scenario/propagation.h"
 #include "io/scenario/scenario_reader.h"
+#include "sonar/paths/enough_bounces.h"
 #include "sonar/ping/asked_arrivals.h"
 
 namespace asdic::detail::app {
@@ -129,6 +130,8 @@ int arrivals(const ArrivalsOptions& options) {
       .to_receiver = free,
       .receiver_depth = options.receiver_depth.value_or(0.0),
       .legs = free ? std::vector{to_receiver(simulator, options)} : to_targets(simulator, options)};
+  if (std::string lack = ended_early(simulator.paths().memory().ended_searches()); !lack.empty())
+    warn({std::move(lack)});
   result.source_depth = options.source_depth.value_or(source.z());
   result.earth = EarthPlaces(scenario.origin, scenario.area.get());
   for (const Target& target : scenario.targets) result.targets.push_back(target.name);

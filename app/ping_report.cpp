@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/units.h"
+#include "sonar/paths/enough_bounces.h"
 #include "sonar/reverberation/phone_groups.h"
 #include "sonar/reverberation/reverberation_band.h"
 #include "sonar/scenario/sampling.h"
@@ -54,6 +55,7 @@ void PingReport::add(const PingRecord& record) {
   band_error_ = std::max(band_error_, record.band.error);
   plane_wave_error_ = std::max(plane_wave_error_, record.plane_waves.error);
   bounces_.include(record.bounces);
+  ended_searches_ = std::max(ended_searches_, record.ended_searches);
   sea_drawn_anew_ = sea_drawn_anew_ || record.sea_drawn_anew;
   reuse_.planes_searched += record.reuse.planes_searched;
   reuse_.planes_reused += record.reuse.planes_reused;
@@ -87,6 +89,7 @@ std::string PingReport::text(double wall) const {
     result +=
         "note: a frozen sea is drawn anew for every ping: under way each ping receives other sums "
         "of its scatterers, and they are too many for reverberation.most_returns\n";
+  if (ended_searches_ > 0) result += fmt::format("note: {}\n", ended_early(ended_searches_));
   if (bounces_.left_out_db > tolerable_db)
     result += fmt::format(
         "note: paths of more than {} bounces are left out, up to {:.2g} dB of the level\n",

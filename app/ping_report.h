@@ -27,6 +27,7 @@ class PingReport {
   const Scenario& scenario_;
   Table table_{summary_columns()};
   bool sea_drawn_anew_ = false;
+  std::size_t ended_searches_ = 0;
   Bounces bounces_;                // that were followed
   double band_error_ = 0.0;        // of reverberation, where it is more than asked for
   double plane_wave_error_ = 0.0;  // of reverberation [periods]

@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <bit>
 #include <complex>
 #include <concepts>
@@ -139,6 +140,11 @@ class PropagationMemory {
 
   [[nodiscard]] std::size_t bytes() const;  ///< of all that is kept
 
+  /// A search was ended for its cost: what it found may be kept, and is not all.
+  void count_ended_search() noexcept { ++ended_searches_; }
+  /// Of all that were made with it.
+  [[nodiscard]] std::size_t ended_searches() const noexcept { return ended_searches_; }
+
  private:
   using Value = std::shared_ptr<void>;
   struct Entry {
@@ -161,6 +167,7 @@ class PropagationMemory {
   std::unordered_map<ExactKey, std::list<Entry>::iterator, Hash> places_;
   std::size_t bytes_ = 0;
   std::uint64_t ping_ = 0;
+  std::atomic<std::size_t> ended_searches_ = 0;
 };
 
 }  // namespace asdic::detail

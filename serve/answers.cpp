@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "sonar/paths/enough_bounces.h"
 #include "sonar/scenario/sampling.h"
 
 namespace asdic::detail::serve {
@@ -131,6 +132,8 @@ std::string ping_line(const ServedPing& served, const PingRecord& record,
   line["timings"] = timings(record.timings, served.prepare);
   add_warnings(scenario, line);
   add_left_out(record.bounces, scenario, line);
+  if (const std::string lack = ended_early(record.ended_searches); !lack.empty())
+    line["warnings"].push_back(lack);
   if (record.sea_drawn_anew) line["sea_drawn_anew"] = true;
   line["latency"] = served.latency;
   line["behind"] = served.behind;

@@ -64,6 +64,8 @@ void PingFileWriter::append(const PingRecord& record) {
   to.file.append<std::int32_t>("run/surface_bounces", std::array{record.bounces.surface});
   to.file.append<std::int32_t>("run/bottom_bounces", std::array{record.bounces.bottom});
   to.file.append<double>("run/left_out_db", std::array{record.bounces.left_out_db});
+  to.file.append<std::int32_t>("run/ended_searches",
+                               std::array{static_cast<std::int32_t>(record.ended_searches)});
   to.file.append<std::int8_t>("run/sea_drawn_anew", std::array{std::int8_t{record.sea_drawn_anew}});
   to.file.append<std::int64_t>("valid_samples",
                                std::array{static_cast<std::int64_t>(record.recording.samples)});

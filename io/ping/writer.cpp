@@ -49,6 +49,8 @@ void PingFileWriter::Impl::create_ping_datasets() {
   growing<std::int32_t>("run/surface_bounces", "reflections at the surface that were followed", "");
   growing<std::int32_t>("run/bottom_bounces", "reflections at the bottom that were followed", "");
   growing<double>("run/left_out_db", "of the level, by paths of more bounces, estimated", "dB");
+  growing<std::int32_t>("run/ended_searches",
+                        "for paths in three dimensions, for their cost, so far", "");
   growing<std::int8_t>("run/sea_drawn_anew",
                        "1 if weights that last are drawn anew: too many scatterers, under way", "");
   growing<std::int8_t>("run/reuse_expected_level",

@@ -184,8 +184,12 @@ ExactKey PropagationPaths::leg_key(Kept kind, const Vec3& from, const Vec3& to, 
 
 Arrivals PropagationPaths::search(const Vec3& from, const Vec3& to, double frequency,
                                   const PathLimits& limits) const {
-  if (const VolumeOcean* ocean = volume())
-    return volume_eigenrays(VolumeTracer(*ocean, frequency), from, to, limits);
+  if (const VolumeOcean* ocean = volume()) {
+    VolumeSearchReport report;
+    Arrivals found = volume_eigenrays(VolumeTracer(*ocean, frequency), from, to, limits, &report);
+    if (report.given_up > 0) memory_->count_ended_search();
+    return found;
+  }
   return search_plane(from, to, frequency, limits);
 }
 

@@ -84,7 +84,8 @@ VolumeFan::VolumeFan(const VolumeTracer& tracer, const Vec3& from, std::span<con
   d_azimuth_ = pi / columns_;
   if (!uniform && turn(0.0) > 0.2) measure_turns();
   trace_corners(told);
-  put_boxes();
+  along_ = {std::sin(bearing_), std::cos(bearing_)};
+  if (border_cuts_ == 0) put_boxes();  // else no leg is passed over
 }
 
 /// By how much bounces off slopes and bent water change the horizontal slowness of a ray at most,
@@ -204,9 +205,8 @@ std::shared_ptr<const VolumeCourse> VolumeFan::course(int row, int column) const
 }
 
 Vec3 VolumeFan::beside_line(const Vec3& place) const noexcept {
-  const double s = std::sin(bearing_), c = std::cos(bearing_);
-  const Vec3 d = place - from_;
-  return {d.x() * s + d.y() * c, d.x() * c - d.y() * s, place.z()};
+  const Vec2 d = (place - from_).head<2>();
+  return {d.dot(along_), d.x() * along_.y() - d.y() * along_.x(), place.z()};
 }
 
 VolumeFan::Box VolumeFan::box_of(const VolumeCourse& course, const VolumeCourse::Leg& leg,
@@ -255,13 +255,10 @@ void VolumeFan::put_boxes() {
       for (const auto& corner : corners) legs = std::max(legs, corner->legs.size());
       for (std::size_t leg = 0; leg < legs; ++leg) {
         bool any = false;
-        std::uint64_t key = 0;
         Box box{};
         for (const auto& corner : corners) {
           if (corner->legs.size() <= leg) continue;
           const Box one = box_of(*corner, corner->legs[leg], diagonal);
-          if (any && corner->legs[leg].key != key) cell.border = true;
-          key = corner->legs[leg].key;
           if (any)
             join(box, one);
           else
@@ -281,6 +278,10 @@ void VolumeFan::put_boxes() {
 }
 
 bool VolumeFan::legs_near(int row, int column, const Vec3& to, std::vector<char>& near) const {
+  if (border_cuts_ > 0) {  // thin families may be hidden where others part
+    near.clear();
+    return true;
+  }
   const Cell& cell =
       cells_[first_of_row_[std::size_t(row)] + std::size_t(column + columns_of(row))];
   const Vec3 place = beside_line(to);
@@ -291,10 +292,6 @@ bool VolumeFan::legs_near(int row, int column, const Vec3& to, std::vector<char>
            place[Eigen::Index(k)] <= double(box.high[k]);
     return in;
   };
-  if (border_cuts_ > 0) {  // thin families may be hidden where others part
-    near.clear();
-    return true;
-  }
   if (cell.begin == cell.end || !inside(cell.whole)) return false;
   near.assign(cell.end - cell.begin, 0);
   bool any = false;

@@ -61,7 +61,6 @@ class VolumeFan {
   struct Cell {
     std::size_t begin = 0, end = 0;  // of its boxes
     Box whole{};
-    bool border = false;  // families part in it
   };
   struct Kept {
     std::shared_mutex lock;
@@ -83,6 +82,7 @@ class VolumeFan {
   std::vector<Vec3> hull_;
   PathLimits limits_;
   double longest_ = 0.0, bearing_ = 0.0;
+  Vec2 along_ = Vec2::UnitY();  // unit vector of the bearing, east and north
   double slope_ = 0.0, by_water_ = 0.0, slowing_ = 1.0;  // for turn()
   int border_cuts_ = 0;
   std::vector<double> turns_;  // of rays of a row, at most, by a coarse ring [rad]

@@ -176,4 +176,12 @@ std::string lacking(const PropagationSettings& settings, const Bounces& followed
   return text;
 }
 
+std::string ended_early(std::size_t searches) {
+  if (searches == 0) return "";
+  return "propagation.dimension: " + std::to_string(searches) +
+         (searches == 1 ? " search" : " searches") +
+         " for paths in three dimensions ended for the cost, and paths may be missing; fewer "
+         "bounces, or planes (dimension = 2), are searched to the end";
+}
+
 }  // namespace asdic::detail

@@ -115,6 +115,8 @@ struct BounceSearch {
 /// missing. \param sound  "an echo"
 [[nodiscard]] std::string lacking(const PropagationSettings& settings, const Bounces& followed,
                                   const char* sound);
+/// The same of searches in three dimensions that were ended for their cost; "" of none.
+[[nodiscard]] std::string ended_early(std::size_t searches);
 
 /// Of the paths between two places that arrive by a time after they left [s]. Numbers of the
 /// settings are kept.

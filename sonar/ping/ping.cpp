@@ -293,6 +293,7 @@ PingRecord PingSimulator::levels(int ping) const {
     return at->second.expected_db(time);
   });
   record.timings.rays = watch.lap();
+  record.ended_searches = paths_->memory().ended_searches();
   return record;
 }
 
@@ -425,6 +426,7 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
     return scattered[static_cast<std::size_t>(array)].expected_db(time);
   });
   record.timings.noise = watch.lap();
+  record.ended_searches = paths_->memory().ended_searches();
   return record;
 }
 

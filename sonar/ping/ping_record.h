@@ -77,6 +77,8 @@ struct PingRecord {
   PlaneWaveFit plane_waves;
   /// Scatterers with weights that last are drawn anew (ScatteringField::drawn_anew).
   bool sea_drawn_anew = false;
+  /// For paths in three dimensions, that were ended for their cost so far, of this ping and before.
+  std::size_t ended_searches = 0;
   Bounces bounces;  ///< that were followed, the most of echoes, blast and reverberation
 
   /// For noise and ships, which are added to it.

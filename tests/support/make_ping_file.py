@@ -223,7 +223,8 @@ def write_levels_and_rays(f, s, result):
                  "planes_reused", "reuse_reverberation", "reuse_expected_level", "band_points", "band_error",
                  "surface_bounces", "bottom_bounces"):
         put(run, name, np.zeros(s.pings), "what was known", None, (f["ping"],), np.int32)
-    put(run, "sea_drawn_anew", np.zeros(s.pings, np.int8), "", "", (f["ping"],))
+    put(run, "ended_searches", np.zeros(s.pings, np.int32), "for paths in three dimensions", "", (f["ping"],))
+    put(run, "sea_drawn_anew", np.zeros(s.pings, np.int8), "1 if weights that last are drawn anew", "", (f["ping"],))
     put(run, "left_out_db", np.zeros(s.pings), "of the level", "dB", (f["ping"],))
 
 

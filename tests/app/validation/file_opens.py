@@ -74,7 +74,7 @@ TABLES = {
 ROWS = {"arrivals": "arrival", "bounces": "bounce", "echoes": "echo", "patches": "patch"}
 SUMMARY = "present array paths echo_time echo_level_db echo_peak_db reverberation_db noise_db echo_to_background_db signal_excess_db"
 TIMINGS = "rays eigenrays patches synthesis noise write"
-REUSE = "reuse_ocean legs_searched legs_reused planes_searched planes_reused reuse_reverberation reuse_expected_level band_points band_error surface_bounces bottom_bounces left_out_db sea_drawn_anew"
+REUSE = "reuse_ocean legs_searched legs_reused planes_searched planes_reused reuse_reverberation reuse_expected_level band_points band_error surface_bounces bottom_bounces left_out_db sea_drawn_anew ended_searches"
 INTEGERS = {"ping", "leg", "target", "channel", "highlight", "path", "outgoing", "returning",
             "surface_bounces",
             "bottom_bounces", "upper_turns",

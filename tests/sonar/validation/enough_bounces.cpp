@@ -1,6 +1,7 @@
 // Shallow water with the bounces that "auto" finds: reverberation and echoes of guides 100 m deep
 // against energy counts, images and modes (tests/data/physics-reference/reverb_guide_*.csv,
 // echo_guide.csv).
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -435,6 +436,14 @@ TEST(EnoughBounces, EndWherePathsMultiplyAndSaySo) {
       search_bounces({.max_surface_bounces = 9, .max_bottom_bounces = 9}, search, look);
   EXPECT_EQ(asked.bottom, 9);
   EXPECT_GT(asked.left_out_db, tolerable_db);
+}
+
+// A search in three dimensions that is ended for its cost is told, and told how to do without.
+TEST(EnoughBounces, SearchesInThreeDimensionsThatEndEarlyAreTold) {
+  EXPECT_EQ(ended_early(0), "");
+  EXPECT_THAT(ended_early(1), testing::HasSubstr("1 search for paths"));
+  EXPECT_THAT(ended_early(3), testing::HasSubstr("3 searches for paths"));
+  EXPECT_THAT(ended_early(3), testing::HasSubstr("dimension = 2"));
 }
 
 }  // namespace
