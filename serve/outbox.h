@@ -2,7 +2,6 @@
 #include <atomic>
 #include <bit>
 #include <cstddef>
-#include <cstring>
 #include <deque>
 #include <string>
 #include <string_view>
@@ -21,26 +20,26 @@ class Outbox {
   void expect(const Answer& answer) noexcept { bytes_ += size_of(answer); }
 
   void add(Answer&& answer) {
-    std::string all = std::move(answer.line);
-    all += '\n';
-    const std::size_t line = all.size(), samples = answer.samples.size() * sizeof(float);
-    all.resize(line + samples);
-    if (samples > 0) std::memcpy(all.data() + line, answer.samples.data(), samples);
-    waiting_.push_back(std::move(all));
+    answer.line += '\n';
+    waiting_.push_back(std::move(answer));
   }
 
   [[nodiscard]] bool empty() const noexcept { return waiting_.empty(); }
   [[nodiscard]] std::size_t answers() const noexcept { return waiting_.size(); }
   [[nodiscard]] std::size_t bytes() const noexcept { return bytes_; }
 
-  /// Bytes of the first answer that are not yet written.
+  /// Bytes of the first answer that are not yet written: of its line, then of its samples.
   [[nodiscard]] std::string_view front() const {
-    return std::string_view(waiting_.front()).substr(written_);
+    const Answer& first = waiting_.front();
+    if (written_ < first.line.size()) return std::string_view(first.line).substr(written_);
+    const std::string_view samples(reinterpret_cast<const char*>(first.samples.data()),
+                                   first.samples.size() * sizeof(float));
+    return samples.substr(written_ - first.line.size());
   }
   /// \return whether an answer is complete by it
   bool wrote(std::size_t bytes) {
     written_ += bytes;
-    if (written_ < waiting_.front().size()) return false;
+    if (written_ < added_size(waiting_.front())) return false;
     bytes_ -= written_;
     written_ = 0;
     waiting_.pop_front();
@@ -49,7 +48,7 @@ class Outbox {
 
   /// Throws away what waits.
   void clear() {
-    for (const std::string& one : waiting_) bytes_ -= one.size();
+    for (const Answer& one : waiting_) bytes_ -= added_size(one);
     waiting_.clear();
     written_ = 0;
   }
@@ -58,8 +57,10 @@ class Outbox {
   static std::size_t size_of(const Answer& answer) noexcept {
     return answer.line.size() + 1 + answer.samples.size() * sizeof(float);
   }
+  /// Of one that has its line's end.
+  static std::size_t added_size(const Answer& answer) noexcept { return size_of(answer) - 1; }
 
-  std::deque<std::string> waiting_;
+  std::deque<Answer> waiting_;
   std::size_t written_ = 0;             // of the first
   std::atomic<std::size_t> bytes_ = 0;  // with those that are expected
 };

@@ -18,6 +18,7 @@
 #include "serve/data_folder.h"
 #include "serve/latency.h"
 #include "serve/live_scenario.h"
+#include "serve/outbox.h"
 #include "serve/pace.h"
 #include "serve/ping_schedule.h"
 #include "serve/token.h"
@@ -411,6 +412,40 @@ TEST(ClientKeys, AreThoseOfTheCommand) {
     EXPECT_EQ(key.name, one.command);
     EXPECT_EQ(key.given, one.given) << one.scenario;
     EXPECT_EQ(key.under, one.under) << one.scenario;
+  }
+}
+
+// Answers go out as their lines and their samples, whatever the reader takes at a time, and samples
+// lie where they were made: no second copy waits for a slow reader.
+TEST(Outbox, GivesLinesAndSamplesByteByByte) {
+  std::vector<float> samples{1.5F, -2.25F, 3e8F};
+  std::string expected = "{}\n";
+  expected.append(reinterpret_cast<const char*>(samples.data()), 3 * sizeof(float));
+  expected += "last\n";
+  for (const std::size_t step : {1U, 2U, 5U, 100U}) {
+    Outbox out;
+    Answer first{.line = "{}", .samples = samples}, last{.line = "last"};
+    const float* const where = first.samples.data();
+    out.expect(first);
+    out.expect(last);
+    EXPECT_EQ(out.bytes(), expected.size());
+    out.add(std::move(first));
+    out.add(std::move(last));
+    EXPECT_EQ(out.bytes(), expected.size());
+    std::string taken;
+    std::size_t answers = 0;
+    while (!out.empty()) {
+      if (taken.size() == 3) {
+        EXPECT_EQ(static_cast<const void*>(out.front().data()), where);
+      }
+      const std::string piece(out.front().substr(0, step));
+      ASSERT_FALSE(piece.empty());
+      taken += piece;
+      if (out.wrote(piece.size())) ++answers;
+    }
+    EXPECT_EQ(taken, expected);
+    EXPECT_EQ(answers, 2U);
+    EXPECT_EQ(out.bytes(), 0U);
   }
 }
 
