@@ -43,9 +43,14 @@ class Connection::Impl {
 
   [[nodiscard]] const std::string& refused() const noexcept { return refused_; }
 
-  void turn_away(const std::string& code, const std::string& message) {
+  void turn_away() {
     tick();
-    end_with(refusal_answer("null", code, message, true));
+    end_with(no_place(limits_));
+  }
+
+  void displace() {
+    give_up();
+    close();
   }
 
   void stop() {
@@ -107,6 +112,7 @@ class Connection::Impl {
       refused_ = refusal.what();
       return end_with(refusal_answer("null", refusal.code(), refusal.what(), true));
     }
+    if (ends_.admits && !ends_.admits()) return end_with(no_place(limits_));
     splitter_.set_longest(limits_.line_bytes);
     worker_ = std::make_unique<SessionWorker>(
         engine_,
@@ -289,9 +295,8 @@ Connection::Connection(asio::io_context& io, Engine& engine, const Ends& ends,
 Connection::~Connection() = default;
 
 void Connection::start() { impl_->start(); }
-void Connection::turn_away(const std::string& code, const std::string& message) {
-  impl_->turn_away(code, message);
-}
+void Connection::turn_away() { impl_->turn_away(); }
+void Connection::displace() { impl_->displace(); }
 void Connection::stop() { impl_->stop(); }
 const std::string& Connection::refused() const noexcept { return impl_->refused(); }
 

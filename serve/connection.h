@@ -21,6 +21,8 @@ class Connection {
     int in = -1, out = -1;  ///< file descriptors, closed by the connection
     bool socket = true;     ///< with the times of a socket: for its handshake, and idle
     std::string token;      ///< that the client must know; empty: none
+    /// Asked once its handshake is good: whether there is a place for it. None: there is.
+    std::function<bool()> admits = {};
   };
 
   /// \param closed  called when all is over, in the io_context's thread
@@ -30,8 +32,10 @@ class Connection {
   Connection& operator=(const Connection&) = delete;
 
   void start();
-  /// Says why not, and closes.
-  void turn_away(const std::string& code, const std::string& message);
+  /// Says that all places are taken, and closes.
+  void turn_away();
+  /// Closes at once: another needs the room.
+  void displace();
   /// The ping in hand is finished and answered, commands that wait are refused, then it closes.
   void stop();
   /// Why the client's handshake was refused; "": it was not.

@@ -27,6 +27,13 @@ Answer queue_full(const std::string& id, const SessionLimits& limits) {
                    "fewer: wait for an answer"));
 }
 
+Answer no_place(const SessionLimits& limits) {
+  return refusal_answer("null", "limit",
+                        refusal_text("server", std::to_string(limits.connections) + " connections",
+                                     "fewer: try again later"),
+                        true);
+}
+
 namespace {
 
 Answer too_late(const char* code, const char* what, std::size_t seconds) {

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <asio.hpp>
 #include <chrono>
 #include <list>
@@ -76,10 +77,26 @@ class Server::Impl {
   }
 
  private:
-  /// Connections of one listener.
-  struct Places {
-    std::size_t serving = 0, turned_away = 0;
+  /// A connection. Guests have not yet said the handshake.
+  struct Client {
+    enum class Stand { guest, served, turned_away };
+    std::unique_ptr<Connection> connection;
+    Stand stand = Stand::guest;
   };
+  using Clients = std::list<Client>;
+  /// Connections of one listener, in the order in which they came.
+  struct Places {
+    Clients clients;
+
+    [[nodiscard]] std::size_t count(Client::Stand stand) const {
+      return static_cast<std::size_t>(
+          std::count_if(clients.begin(), clients.end(),
+                        [&](const Client& client) { return client.stand == stand; }));
+    }
+  };
+  /// Who waits longest without a handshake gives way to one more: nobody without the token can keep
+  /// those out who have it.
+  static constexpr std::size_t most_guests = 32;
 
   void listen(const std::filesystem::path& path) {
     make_room_for_socket(path);
@@ -135,31 +152,39 @@ class Server::Impl {
     // Peers of one kind cannot take the places of the other: TCP is open to every user here.
     Places& places = std::is_same_v<Socket, Tcp::socket> ? of_tcp_ : of_socket_;
     const std::size_t most = settings_.limits.connections;
-    if (places.serving + places.turned_away >= 2 * most) {  // even those that are told so
+    const bool full = places.count(Client::Stand::served) >= most;
+    if (full && places.count(Client::Stand::turned_away) >= most) {  // even those that are told so
       ::close(in);
       ::close(out);
       return;
     }
-    open({.in = in, .out = out, .socket = true, .token = token}, places, places.serving >= most);
+    if (!full && places.count(Client::Stand::guest) >= most_guests) {
+      const auto oldest =
+          std::find_if(places.clients.begin(), places.clients.end(),
+                       [](const Client& client) { return client.stand == Client::Stand::guest; });
+      oldest->stand = Client::Stand::turned_away;
+      oldest->connection->displace();
+    }
+    open({.in = in, .out = out, .socket = true, .token = token}, places, full);
   }
 
-  void open(const Connection::Ends& ends, Places& places, bool away) {
-    const auto place = connections_.emplace(connections_.end());
-    std::size_t& count = away ? places.turned_away : places.serving;
-    ++count;
-    *place = std::make_unique<Connection>(io_, engine_, ends, [this, place, &count] {
-      refused_ = refused_ || !(*place)->refused().empty();
-      connections_.erase(place);
-      --count;
+  void open(Connection::Ends ends, Places& places, bool full) {
+    const auto place = places.clients.emplace(places.clients.end());
+    ends.admits = [this, place, &places] {
+      const bool free = places.count(Client::Stand::served) < settings_.limits.connections;
+      place->stand = free ? Client::Stand::served : Client::Stand::turned_away;
+      return free;
+    };
+    place->connection = std::make_unique<Connection>(io_, engine_, ends, [this, place, &places] {
+      refused_ = refused_ || !place->connection->refused().empty();
+      places.clients.erase(place);
     });
-    if (away) {
-      (*place)->turn_away(
-          "limit",
-          refusal_text("server", std::to_string(settings_.limits.connections) + " connections",
-                       "fewer: try again later"));
+    if (full) {
+      place->stand = Client::Stand::turned_away;
+      place->connection->turn_away();
     } else {
-      (*place)->start();
-      if (stopping_) (*place)->stop();
+      place->connection->start();
+      if (stopping_) place->connection->stop();
     }
   }
 
@@ -169,7 +194,8 @@ class Server::Impl {
     static_cast<void>(local_.close(ignored));
     static_cast<void>(tcp_.close(ignored));
     pause_.cancel();
-    for (auto& one : connections_) one->stop();
+    for (Places* places : {&of_socket_, &of_tcp_})
+      for (Client& client : places->clients) client.connection->stop();
   }
 
   asio::io_context io_{1};
@@ -181,7 +207,6 @@ class Server::Impl {
   Tcp::acceptor tcp_;
   asio::steady_timer pause_;
   std::unique_ptr<SocketName> name_;
-  std::list<std::unique_ptr<Connection>> connections_;
   Places of_socket_, of_tcp_;
   bool refused_ = false;  // the handshake of one of them
   bool stopping_ = false;

@@ -44,7 +44,8 @@ void SessionLimits::describe(Fields& field) {
   field("file_bytes", file_bytes, 1, most, "of a file that a command names");
   field("kept_bytes", kept_bytes, 1, most, "of sound paths that a session keeps for later pings");
   field("queued_pings", queued_pings, 1, most, "commands of a connection that wait");
-  field("connections", connections, 1, most, "at a time, of the Unix socket and of TCP each");
+  field("connections", connections, 1, most,
+        "with a handshake, at a time, of the Unix socket and of TCP each");
   field("answer_bytes", answer_bytes, 1, most,
         "of answers that a slow reader has not taken; then its commands wait, and no more is read "
         "from it");

@@ -5,7 +5,9 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <memory>
 #include <thread>
+#include <vector>
 
 #include "serve/server.h"
 #include "support/serve.h"
@@ -202,6 +204,23 @@ TEST(Server, TurnsAwayOneTooMany) {
   EXPECT_EQ(three.receive()["error"]["code"], "limit");
   EXPECT_EQ(three.receive(), nullptr);
   EXPECT_EQ(one.ask(R"({"command": "state"})")["ok"], true);
+}
+
+// Connections that say nothing take no place of those that say the handshake: of very many the
+// oldest give way. Places are counted by handshakes.
+TEST(Server, GuestsKeepNobodyOut) {
+  Running running({"connections=2"});
+  Client late(running.socket());
+  std::vector<std::unique_ptr<Client>> silent;
+  for (int i = 0; i < 40; ++i) silent.push_back(std::make_unique<Client>(running.socket()));
+  EXPECT_EQ(late.receive(), nullptr);  // it was the oldest
+  EXPECT_EQ(silent.front()->receive(), nullptr);
+  Client one(running.socket());
+  EXPECT_EQ(one.ask(hello)["ok"], true);
+  EXPECT_EQ(silent.back()->ask(hello)["ok"], true);
+  EXPECT_EQ(silent[30]->ask(hello)["error"]["code"], "limit");
+  EXPECT_EQ(silent[30]->receive(), nullptr);
+  EXPECT_EQ(one.ask(R"({"command": "ping"})")["ok"], true);
 }
 
 }  // namespace
