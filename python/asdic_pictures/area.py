@@ -205,9 +205,9 @@ def among(area: Area, cells):
 
     return inside
 
-def contours(axes, area: Area) -> list:
+def contours(axes, area: Area, **relief) -> list:
     """Of the sea floor's depth. → handles"""
-    levels = style.depth_levels(area.bottom)
+    levels = style.depth_levels(area.bottom, **relief)
     return style.depth_lines(axes, *middles(area), closed(area.bottom), levels)
 
 
@@ -353,7 +353,7 @@ def draw_sea_floor(area: Area, axes=None, limits=None):
     mesh = axes.pcolormesh(*edges(area), area.bottom, cmap=style.LOSS_MAP, vmin=limits[0],
                            vmax=limits[1], rasterized=True, zorder=1)
     frame(axes, area)
-    handles = beyond_the_map(axes, area) + contours(axes, area) + marks(axes, area)
+    handles = beyond_the_map(axes, area) + contours(axes, area, relief=0.0) + marks(axes, area)
     bar = style.colour_bar(fig, mesh, axes, "depth of the sea floor / m", style.beyond(area.bottom, limits))
     bar.ax.invert_yaxis()   # deep is down
     style.subtitle(axes, with_warning(area, area.title))

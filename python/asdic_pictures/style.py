@@ -406,10 +406,12 @@ def weighted_percentiles(values, weight, percents) -> np.ndarray:
     return np.asarray(values)[good][order][np.minimum(place, order.size - 1)].astype(float)
 
 
-def depth_levels(depth) -> np.ndarray:
-    """About six even depths [m] between the least and the greatest; none of a flat floor."""
+def depth_levels(depth, relief: float = 0.05) -> np.ndarray:
+    """About six even depths [m] between the least and the greatest; none of a floor that is flat but for a
+    share of its depth: its lines would hide what they are drawn over. \param relief  that share
+    """
     good = depth[np.isfinite(depth)]
-    if not good.size or not np.ptp(good) > 1.0:
+    if not good.size or not np.ptp(good) > max(1.0, relief * float(good.max())):
         return np.zeros(0)
     low, high = float(good.min()), float(good.max())
     step = (high - low) / 6.0

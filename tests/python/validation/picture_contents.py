@@ -190,6 +190,13 @@ class AreaMaps(Case):
                          np.array([0.0, 0.0, 6.0]), np.array([0.0, 0.0, 6.0]), given,
                          given["certainty"], np.zeros(shape), floor, "it", "the array", beyond)
 
+    def test_a_flat_floor_has_no_contours(self):
+        """Of 2 m in 60 they would hide the map; the picture of the floor has them."""
+        span = np.linspace(0.0, 1.0, 50)
+        self.assertEqual(style.depth_levels(60.0 + 2.0 * span).size, 0)
+        self.assertGreater(style.depth_levels(60.0 + 2.0 * span, relief=0.0).size, 2)
+        self.assertGreater(style.depth_levels(60.0 + 4.0 * span).size, 2)
+
     def test_colours_are_those_of_the_area(self):
         """Levels that fall evenly with the area within, from 124 to -176 dB: 2 % above, 60 dB below."""
         span = (np.arange(50) + 0.5) / 50.0
