@@ -17,6 +17,7 @@ struct ServedPing {
   double prepare = 0.0;       ///< scenario read, simulator built [s]
   double latency = 0.0;       ///< from when it was to be sent to when its data were complete [s]
   double behind = 0.0;        ///< it was sent so long after its time [s]
+  std::string warning;        ///< about this ping; empty: none
 };
 
 // One line of JSON each, without its end.

@@ -222,6 +222,15 @@ std::string id_of(std::string_view line, const SessionLimits& limits) {
   return listener.id();
 }
 
+std::optional<double> number_said(const TomlValue& fields, std::string_view key) {
+  const TomlValue* value = fields.find(key);
+  if (value == nullptr) return std::nullopt;
+  if (const auto* number = std::get_if<double>(&value->data)) return *number;
+  if (const auto* number = std::get_if<std::int64_t>(&value->data))
+    return static_cast<double>(*number);
+  return std::nullopt;
+}
+
 Handshake read_handshake(std::string_view line) {
   const Refusal wrong("handshake", refusal_text("first line", "another", R"({"asdic": 1})"));
   SessionLimits strict;

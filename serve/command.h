@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -31,6 +32,9 @@ struct Handshake {
 /// \throws Refusal ("json", "limit", "command")
 [[nodiscard]] Command read_command(std::string_view line, const SessionLimits& limits,
                                    std::span<const std::string_view> names = command_names());
+
+/// The number of a key as it stands there; none: it has none, or something else.
+[[nodiscard]] std::optional<double> number_said(const TomlValue& fields, std::string_view key);
 
 /// \throws Refusal ("handshake") whose message says nothing of the line
 [[nodiscard]] Handshake read_handshake(std::string_view line);

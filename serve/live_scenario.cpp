@@ -8,6 +8,7 @@
 #include "serve/caps.h"
 #include "serve/client_key.h"
 #include "serve/client_names.h"
+#include "serve/command.h"
 #include "serve/motion.h"
 #include "serve/update.h"
 
@@ -101,6 +102,7 @@ void LiveScenario::update(const TomlValue& fields, double now) {
   state_ = read_for_client(changes, fields, document);
   document_ = std::move(document);
   changes_ = std::move(changes);
+  changed_ = std::max(changed_, number_said(fields, "time").value_or(now));
 }
 
 std::string LiveScenario::elevation_override(int transmitter, double elevation) const {

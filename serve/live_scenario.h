@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/units.h"
 #include "io/text/toml_value.h"
 #include "serve/data_folder.h"
 #include "serve/refusal.h"
@@ -49,6 +50,8 @@ class LiveScenario {
   /// The command `update`: all of it, or nothing. \param fields  of the command
   /// \param now  at which the positions are meant where it does not say [s] \throws Refusal
   void update(const TomlValue& fields, double now);
+  /// At which the latest change is meant [s]; −∞: there was none.
+  [[nodiscard]] double changed() const noexcept { return changed_; }
 
   /// What a client is told of a fault that comes to light when the scenario is used.
   /// \param fields  of the command
@@ -79,6 +82,7 @@ class LiveScenario {
   TomlValue document_;
   Changes changes_;
   int pings_ = 1;  // of the file's schedule
+  double changed_ = -infinity;
   State state_;
 };
 

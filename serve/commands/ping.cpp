@@ -35,13 +35,9 @@ Transmission transmission_of(const SessionState& session, const PingRequest& req
 
 double PingCommand::wait(const SessionState& session, const Command& command) {
   if (!session.settings.pace.by_the_clock()) return 0.0;
-  const TomlValue* time = command.fields.find("time");
-  if (time == nullptr) return 0.0;
-  double wanted = 0.0;  // a wrong one is told when the command is carried out
-  if (const auto* number = std::get_if<double>(&time->data)) wanted = *number;
-  if (const auto* number = std::get_if<std::int64_t>(&time->data))
-    wanted = static_cast<double>(*number);
-  const double ahead = std::max(0.0, (wanted - session.now()) / *session.settings.pace.factor);
+  const auto wanted = number_said(command.fields, "time");
+  if (!wanted) return 0.0;  // a wrong one is told when the command is carried out
+  const double ahead = std::max(0.0, (*wanted - session.now()) / *session.settings.pace.factor);
   return ahead > double(session.settings.limits.idle_seconds) ? 0.0 : ahead;  // it is refused
 }
 
@@ -72,6 +68,9 @@ Answer PingCommand::run(SessionState& session, const Command& command) {
     throw Refusal("limit", refusal_text("deliver", "more samples",
                                         "at most " + std::to_string(settings.limits.answer_bytes) +
                                             " bytes in an answer"));
+  if (sent.time < session.live.changed())
+    served.warning = "time: " + to_text(sent.time) + " s lies before the latest change, at " +
+                     to_text(session.live.changed()) + " s: all is as that says, back in time";
   served.prepare = session.clock() - begin;
   PingRecord record = simulator.simulate(number, sent);
   if (request.deliver == Delivery::file) {

@@ -39,6 +39,23 @@ TEST(Session, SamplesAreThoseOfARun) {
   EXPECT_EQ(served(R"({"command": "ping"})")["time"], 30.0);
 }
 
+// Before the latest change there was another scenario, which is not kept: that is said.
+TEST(Session, APingBeforeTheLatestChangeIsTold) {
+  Served served;
+  const auto told = [&](const char* line) {
+    const auto said = served(line);
+    EXPECT_EQ(said["ok"], true) << said;
+    return said.value("warnings", nlohmann::json::array()).dump();
+  };
+  EXPECT_THAT(told(R"({"command": "ping", "time": 50})"), Not(HasSubstr("latest change")));
+  told(R"({"command": "update", "time": 100, "targets": {"velocity": [1, 0, 0]}})");
+  EXPECT_THAT(told(R"({"command": "ping", "time": 99})"),
+              HasSubstr("time: 99 s lies before the latest change, at 100 s"));
+  EXPECT_THAT(told(R"({"command": "ping", "time": 100})"), Not(HasSubstr("latest change")));
+  told(R"({"command": "update", "time": 20, "wind_speed": 3})");
+  EXPECT_THAT(told(R"({"command": "ping", "time": 30})"), HasSubstr("latest change"));
+}
+
 // 3 km away and back at 1500 m/s: 4 s. TL = 20 log 3000, RL = SL − 2 TL + TS.
 TEST(Session, TellsTheEchoOfEachTarget) {
   Served served;
