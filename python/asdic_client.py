@@ -37,10 +37,12 @@ class Ping:
 
     answer   dict as docs/formats/serve.md has it
     samples  [channels × samples] pressure [Pa]: float32, or complex64 baseband; None without them
+    replica  [samples] the pulse of unit peak, of the same type; None unless it was asked for
     """
 
     def __init__(self, answer, samples):
         self.answer, self.samples = answer, samples
+        self.replica = answer.get("replica", {}).get("values")
 
 
 class Client:
@@ -104,7 +106,7 @@ class Client:
 
     def ping(self, **fields):
         """→ Ping. Keys: time, transmitter, waveform, elevation_deg, beamwidth_deg,
-        source_level_db, deliver ("file", "samples", "none")
+        source_level_db, deliver ("file", "samples", "none"), replica
         """
         return Ping(*self.command("ping", **fields))
 
@@ -149,13 +151,19 @@ class Client:
         what = answer.get("samples", {})
         if "bytes" not in what:
             return answer, None
+        pulse = answer.get("replica")
+        is_complex = len(what["shape"]) == 3  # real and imaginary part
+        samples = self._numbers(what, is_complex)
+        if pulse is not None:
+            pulse["values"] = self._numbers(pulse, is_complex)
+        return answer, samples
+
+    def _numbers(self, what, is_complex):
         data = self._reader.read(what["bytes"])
         if len(data) != what["bytes"]:
             raise ConnectionError("the server has closed the connection within samples")
-        samples = np.frombuffer(data, "<f4").reshape(what["shape"])
-        if samples.ndim == 3:  # real and imaginary part
-            samples = samples.view("<c8")[..., 0]
-        return answer, samples
+        numbers = np.frombuffer(data, "<f4").reshape(what["shape"])
+        return numbers.view("<c8")[..., 0] if is_complex else numbers
 
     def _write(self, message):
         line = json.dumps(message, allow_nan=False, default=_plain)

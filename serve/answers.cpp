@@ -118,6 +118,11 @@ std::string ping_line(const ServedPing& served, const PingRecord& record,
     line["samples"]["byte_order"] = "little";
     line["samples"]["bytes"] = record.pressure.size() * sizeof(float);
   }
+  if (served.replica > 0) {
+    OrderedJson shape{served.replica};
+    if (record.recording.is_complex()) shape = {served.replica / 2, 2};
+    line["replica"] = {{"shape", shape}, {"bytes", served.replica * sizeof(float)}};
+  }
   line["targets"] = targets(record);
   double first = infinity;
   for (const EchoPath& echo : record.echoes) first = std::min(first, echo.received.delay);

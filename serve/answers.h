@@ -14,6 +14,7 @@ struct ServedPing {
   std::string id = "null";    ///< JSON
   std::string file;           ///< that it was written to; empty: none
   bool with_samples = false;  ///< follow the line
+  std::size_t replica = 0;    ///< numbers of the pulse, which follow them
   double prepare = 0.0;       ///< scenario read, simulator built [s]
   double latency = 0.0;       ///< from when it was to be sent to when its data were complete [s]
   double behind = 0.0;        ///< it was sent so long after its time [s]

@@ -21,6 +21,7 @@ struct PingRequest {
   std::optional<double> elevation;  ///< of the beam, positive up [rad]
   PingChanges changes;              ///< its transmitter is set when that is known
   Delivery deliver = Delivery::none;
+  bool replica = false;  ///< follows the samples
 
   /// But for `transmitter` and what the client's scenario says itself.
   void describe(Fields& field);

@@ -18,6 +18,7 @@
 #include "io/text/material_text.h"
 #include "raytrace/area/earth_places.h"
 #include "raytrace/places/propagation_paths.h"
+#include "sonar/ping/recorded_replica.h"
 #include "sonar/scenario/sampling.h"
 #include "sonar/scenario/transmitter.h"
 
@@ -99,8 +100,7 @@ void write_replica(Hdf5File& file, const Scenario& scenario, int transmitter, Sa
   const double rate = recorded_rate(scenario), carrier = recorded_carrier(scenario);
   const std::string suffix = transmitter == 0 ? "" : "_" + std::to_string(transmitter);
   const std::string name = "replica" + suffix;
-  std::vector<float> samples =
-      carrier > 0.0 ? baseband_replica(pulse, rate, carrier) : replica(pulse, rate);
+  const std::vector<float> samples = recorded_replica(scenario, transmitter);
   const std::size_t length = carrier > 0.0 ? samples.size() / 2 : samples.size();
   const TimeAxis axis{.dimension = "replica_sample" + suffix,
                       .coordinate = "replica_time" + suffix,

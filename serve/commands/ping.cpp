@@ -7,6 +7,7 @@
 #include "serve/ping_request.h"
 #include "serve/places.h"
 #include "serve/refusal.h"
+#include "sonar/ping/recorded_replica.h"
 #include "sonar/scenario/sampling.h"
 
 namespace asdic::detail::serve {
@@ -89,8 +90,12 @@ Answer PingCommand::run(SessionState& session, const Command& command) {
   served.with_samples = request.deliver == Delivery::samples;
   served.latency = session.clock() - due;
   session.latency.add(served.latency);
+  std::vector<float> pulse;
+  if (request.replica) pulse = recorded_replica(scenario, sent.transmitter);
+  served.replica = pulse.size();
   Answer answer{.line = ping_line(served, record, scenario)};
   if (served.with_samples) answer.samples = std::move(record.pressure);
+  answer.samples.insert(answer.samples.end(), pulse.begin(), pulse.end());
   return answer;
 }
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "io/scenario/scenario_reader.h"
+#include "sonar/ping/recorded_replica.h"
 #include "support/serve.h"
 
 // A session without sockets: every command, every refusal, and what of a scenario no client sees.
@@ -37,6 +38,26 @@ TEST(Session, SamplesAreThoseOfARun) {
     EXPECT_EQ(served.last.samples, run.simulate(ping).pressure);
   }
   EXPECT_EQ(served(R"({"command": "ping"})")["time"], 30.0);
+}
+
+// The pulse follows the samples, where it is asked for.
+TEST(Session, APingMayBringItsPulse) {
+  Served served;
+  const auto plain = served(R"({"command": "ping", "time": 0, "deliver": "samples"})");
+  const std::vector<float> pressure = served.last.samples;
+  EXPECT_FALSE(plain.contains("replica"));
+  const auto both = served(R"({"command": "ping", "deliver": "samples", "replica": true})");
+  ASSERT_EQ(both["ok"], true) << both;
+  const std::size_t values = served.last.samples.size() - pressure.size();
+  EXPECT_EQ(both["samples"]["bytes"], plain["samples"]["bytes"]);
+  EXPECT_EQ(both["replica"]["bytes"], values * sizeof(float));
+  EXPECT_EQ(both["replica"]["shape"], (std::vector<std::size_t>{values / 2, 2}));
+  const Scenario scenario = parse_scenario(support::served_scenario, "same.toml");
+  const std::vector<float> pulse = recorded_replica(scenario, 0);
+  EXPECT_TRUE(std::equal(pulse.begin(), pulse.end(),
+                         served.last.samples.end() - static_cast<std::ptrdiff_t>(values)));
+  const auto refused = served(R"({"command": "ping", "replica": true})");
+  EXPECT_THAT(refused["error"]["message"].get<std::string>(), HasSubstr("replica"));
 }
 
 // Before the latest change there was another scenario, which is not kept: that is said.
@@ -268,7 +289,7 @@ TEST(Session, RefusesInOneMessage) {
       {ping + R"("elevation_deg": 91})",
        "value: elevation_deg: found 91 degrees, expected an elevation from -90 to 90 degrees"},
       {ping + R"("level": 200})",
-       R"(value: level: found an unknown key, expected one of "beamwidth_deg", "deliver", "elevation_deg", "source_level_db", "time", "transmitter" or "waveform")"},
+       R"(value: level: found an unknown key, expected one of "beamwidth_deg", "deliver", "elevation_deg", "replica", "source_level_db", "time", "transmitter" or "waveform")"},
       {ping + R"("wave_form": 2})",
        "value: wave_form: found an unknown key, expected a known key (did you mean "
        "\"waveform\"?)"},
@@ -285,7 +306,7 @@ TEST(Session, RefusesInOneMessage) {
        "file: waveform.file: found a file, expected none: the server was started without "
        "--data-dir"},
       {ping + R"("output": "/tmp/x.h5"})",
-       R"(value: output: found an unknown key, expected one of "beamwidth_deg", "deliver", "elevation_deg", "source_level_db", "time", "transmitter" or "waveform")"},
+       R"(value: output: found an unknown key, expected one of "beamwidth_deg", "deliver", "elevation_deg", "replica", "source_level_db", "time", "transmitter" or "waveform")"},
       {R"({"command": "update"})",
        "value: update: found nothing, expected platform, array, targets, wind_speed, sound_speed, "
        "noise, seed or recording"},

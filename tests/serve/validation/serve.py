@@ -163,12 +163,16 @@ def by_standard_streams(pings):
     os.mkdir("pings")
     with Client.start("sea.toml", "--output-dir", "pings", program=ASDIC) as client:
         same_bits(client, pings)
+        with_pulse = client.ping(deliver="samples", replica=True)
         answer = client.ping(time=0.0, elevation_deg=2.0).answer
         with h5py.File(answer["file"]) as file:
-            check(list(file["ping"]) == [4] and file["ping_time"][0] == 0.0, answer)
+            pulse = file["replica"][()].astype("<f4")
+            check(with_pulse.replica.tobytes() == pulse.tobytes(), "another replica")
+            check(with_pulse.samples.shape == pings[0].shape, with_pulse.answer["samples"])
+            check(list(file["ping"]) == [5] and file["ping_time"][0] == 0.0, answer)
             check(file[answer["dataset"]].shape[1:] == tuple(answer["samples"]["shape"]), answer)
             check(file.attrs["complete"] == 1, "not complete")
-        check(client.quit()["pings"] == 4, "four pings")
+        check(client.quit()["pings"] == 5, "five pings")
         check(client.process.returncode == 0, "exit status")
 
     # A file of commands: all of them are carried out, also a last one without the end of its line.
