@@ -3,6 +3,8 @@
 #include "io/scenario/propagation.h"
 #include "io/scenario/scenario_reader.h"
 #include "raytrace/parallel/stop.h"
+#include "raytrace/warnings/warnings.h"
+#include "sonar/paths/enough_bounces.h"
 
 namespace asdic {
 namespace {
@@ -36,7 +38,9 @@ const detail::PingSimulator& Physics::ready_to_ping(const Watch& watch) {
 
 std::vector<std::string> Physics::warnings() {
   const std::scoped_lock lock(mutex_);
-  return simulator_.scenario().notes;
+  std::vector<std::string> all = simulator_.scenario().notes;
+  detail::add_warnings({detail::ended_early(simulator_.paths().memory().ended_searches())}, all);
+  return all;
 }
 
 Physics& Access::physics(const Scenario& scenario) {

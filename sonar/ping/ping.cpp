@@ -494,7 +494,8 @@ PingSimulator::JudgedPaths PingSimulator::judge_paths() {
   }
   judged.followed.include(reverberated);
   add_warnings({lacking(scenario_.propagation, echoes, "an echo"),
-                lacking(scenario_.propagation, reverberated, "reverberation")},
+                lacking(scenario_.propagation, reverberated, "reverberation"),
+                ended_early(paths_->memory().ended_searches())},
                judged.warnings);
   judged.followed.include(echoes);
   add_warnings(judged.warnings, scenario_.notes);
