@@ -18,7 +18,7 @@
 #include "io/text/material_text.h"
 #include "raytrace/cases/memory.h"
 #include "sonar/ping/ping.h"
-#include "sonar/ping/stream.h"
+#include "sonar/ping/stream_parts.h"
 #include "sonar/scenario/sampling.h"
 
 namespace asdic::detail::app {
@@ -124,7 +124,7 @@ std::string size_text(const PingSimulator& simulator) {
   const PingSchedule& p = s.pings;
   const double rate = recorded_rate(s);
   const bool complex = p.samples == Samples::baseband;
-  const double samples = p.continuous ? static_cast<double>(Stream::longest_part(s))
+  const double samples = p.continuous ? static_cast<double>(longest_stream_part(s))
                                       : std::round(p.recording_duration * rate);
   const double bytes = 4.0 * (complex ? 2.0 : 1.0) * samples * static_cast<double>(channels_of(s)) *
                            simulator.pings() +

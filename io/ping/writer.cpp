@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sonar/ping/stream.h"
+#include "sonar/ping/stream_parts.h"
 
 namespace asdic::detail {
 
@@ -88,7 +88,7 @@ void PingFileWriter::Impl::create_ping_datasets() {
 void PingFileWriter::Impl::create_sampled_datasets(const PingRecord& record) {
   const Recording& recording = record.recording;
   samples = recording.samples;
-  if (scenario.pings.continuous) samples = Stream::longest_part(scenario);
+  if (scenario.pings.continuous) samples = longest_stream_part(scenario);
   const TimeAxis time{.dimension = "sample",
                       .coordinate = "time",
                       .long_name = "after the start of the ping",

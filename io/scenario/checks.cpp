@@ -12,7 +12,7 @@
 #include "io/scenario/sections.h"
 #include "raytrace/area/earth_places.h"
 #include "sonar/ping/ping_memory.h"
-#include "sonar/ping/stream.h"
+#include "sonar/ping/stream_parts.h"
 #include "sonar/scenario/carried.h"
 #include "sonar/scenario/ping_bounds.h"
 #include "sonar/scenario/sampling.h"
@@ -309,7 +309,7 @@ void check_sampling(TomlTable& root, const Scenario& scenario, const PulseSettin
 
 void check_size(TomlTable& root, const Scenario& scenario) {
   const double rate = recorded_rate(scenario);
-  const std::size_t longest = scenario.pings.continuous ? Stream::longest_part(scenario) : 0;
+  const std::size_t longest = scenario.pings.continuous ? longest_stream_part(scenario) : 0;
   const double samples =
       std::max(scenario.pings.recording_duration * rate, static_cast<double>(longest));
   TomlTable pings = root.table("pings");

@@ -81,19 +81,23 @@ AmbientNoise::AmbientNoise(const Scenario& scenario, const PropagationPaths& pat
 void AmbientNoise::add(const RecordSamples& record, std::int64_t later) const {
   if (!settings_.any() || record.pressure.empty()) return;
   const auto ping = static_cast<std::uint32_t>(record.ping);
+  // Pings of a stream leave at whole samples: the first sample of this part, counted from the
+  // scenario's start.
+  const std::int64_t first = (continuous_ ? std::llround(record.start_time * rate_) : 0) + later;
   if (settings_.plain()) {
     const double level = *settings_.flat_level_db();
-    add_white_noise(record.pressure, record.channels,
-                    record.recording.is_complex() ? white_baseband_variance(level, rate_)
-                                                  : white_noise_variance(level, rate_),
-                    seed_, later < 0 ? ping | before_all : ping);
+    const double variance = record.recording.is_complex() ? white_baseband_variance(level, rate_)
+                                                          : white_noise_variance(level, rate_);
+    if (continuous_)
+      add_stream_of_white_noise(record.pressure, record.channels, variance, seed_,
+                                first * static_cast<std::int64_t>(record.recording.components()));
+    else
+      add_white_noise(record.pressure, record.channels, variance, seed_,
+                      later < 0 ? ping | before_all : ping);
     return;
   }
   const double zero = record.recording.start + (continuous_ ? 0.0 : record.start_time);
   const std::size_t row = record.recording.samples * record.recording.components();
-  // Pings of a stream leave at whole samples: the first sample of this part, counted from the
-  // scenario's start.
-  const std::int64_t first = (continuous_ ? std::llround(record.start_time * rate_) : 0) + later;
   for (std::size_t a = 0; a < arrays_.size(); ++a) {
     const std::span<float> rows = record.pressure.subspan(
         first_channels_[a] * row, (first_channels_[a + 1] - first_channels_[a]) * row);

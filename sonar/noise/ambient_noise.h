@@ -12,7 +12,7 @@ namespace asdic::detail {
 
 /// The sea's own noise at all phones of a scenario.
 ///
-/// White noise, independent from phone to phone, is drawn sample by sample, ping by ping
+/// White noise, independent from phone to phone, is drawn sample by sample
 /// (sonar/noise/noise.h). All other noise is BlockNoise: one coherent group an array, in the shape
 /// that it has in a ping (a line that turns: in the middle of each block), arrays independent of
 /// one another; separate pings are draws of their own, a stream is one draw of its absolute time.
@@ -22,7 +22,8 @@ class AmbientNoise {
   AmbientNoise(const Scenario& scenario, const PropagationPaths& paths);
 
   /// Adds the noise to a record's pressure. \param later  samples by which what is added lies after
-  /// the record's; white noise has no time: before the record's it is another, else the same
+  /// the record's; white noise of separate
+  /// pings has no time: before the record's it is another, else the same
   void add(const RecordSamples& record, std::int64_t later = 0) const;
 
   /// Mean-square pressure within the recorded band [Pa²].

@@ -22,4 +22,9 @@ namespace asdic::detail {
 void add_white_noise(std::span<float> all, std::size_t channels, double variance,
                      std::uint64_t seed, std::uint32_t ping);
 
+/// The same of a stream, which has no pings: numbers `first` … of every phone's, whatever part of
+/// it is asked for.
+void add_stream_of_white_noise(std::span<float> all, std::size_t channels, double variance,
+                               std::uint64_t seed, std::int64_t first);
+
 }  // namespace asdic::detail

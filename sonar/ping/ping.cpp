@@ -520,7 +520,7 @@ std::vector<float> PingSimulator::surroundings(const PingRecord& record, std::in
   return std::move(part.pressure);
 }
 
-void PingSimulator::complete(PingRecord& record, ReceiverElectronics::Carried* carried) const {
+void PingSimulator::complete(PingRecord& record) const {
   Stopwatch watch;
   if (receivers_.is_flat()) {
     record.interference = interference_.add(record.samples());
@@ -529,58 +529,83 @@ void PingSimulator::complete(PingRecord& record, ReceiverElectronics::Carried* c
     std::vector<float> received =
         std::exchange(record.pressure, std::vector<float>(record.pressure.size(), 0.0F));
     const auto ahead = static_cast<std::int64_t>(receivers_.ahead(record.recording));
-    ReceiverElectronics::Carried own;
-    if (carried == nullptr) carried = &own;
-    if (carried->empty()) *carried = surroundings(record, -ahead, 2 * ahead);
+    ReceiverElectronics::Carried carried = surroundings(record, -ahead, 2 * ahead);
     record.interference = interference_.add(record.samples(), ahead);
     noise_.add(record.samples(), ahead);
-    receivers_.respond(record.pressure, record.recording, *carried);
+    receivers_.respond(record.pressure, record.recording, carried);
     std::transform(received.begin(), received.end(), record.pressure.begin(),
                    record.pressure.begin(), std::plus<>{});
   }
-  if (scenario_.pings.blanking) blank(record);
+  if (scenario_.pings.blanking) {  // while this ping leaves: its record receives no other
+    const Recording& recording = record.recording;
+    const auto sample = [&](double since) {  // the first one from then on
+      return static_cast<std::size_t>(
+          std::ceil(std::clamp((since - recording.start) * recording.sample_rate, 0.0,
+                               static_cast<double>(recording.samples))));
+    };
+    const auto& sender = scenario_.transmitters[static_cast<std::size_t>(record.transmitter)];
+    blank(sender.platform, record.pressure, sample(0.0),
+          sample(pulse(record.transmitter).duration()));
+  }
   receivers_.convert(record.pressure, record.recording);
   record.timings.noise += watch.lap();
 }
 
-/// Nothing is received on a platform while one of its transmitters sends: this ping's own or, in a
-/// stream, that of any other ping that falls into this part of it.
-void PingSimulator::blank(PingRecord& record) const {
-  const Recording& recording = record.recording;
-  const std::size_t width = recording.components(), row = recording.samples * width;
-  const auto sample = [&](double since) {  // the first one from then on
-    return static_cast<std::ptrdiff_t>(
-        std::ceil(std::clamp((since - recording.start) * recording.sample_rate, 0.0,
-                             static_cast<double>(recording.samples))));
-  };
-  const auto silence = [&](int transmitter, double since) {
-    const std::ptrdiff_t begin = sample(since), end = sample(since + pulse(transmitter).duration());
-    const int carrier = scenario_.transmitters[static_cast<std::size_t>(transmitter)].platform;
-    for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
-      if (scenario_.arrays[a].platform != carrier) continue;
-      const std::size_t first = first_channel(scenario_, static_cast<int>(a));
-      for (std::size_t n = 0; n < scenario_.arrays[a].phones.size(); ++n) {
-        const auto channel =
-            record.pressure.begin() + static_cast<std::ptrdiff_t>((first + n) * row);
-        std::fill(channel + begin * static_cast<std::ptrdiff_t>(width),
-                  channel + end * static_cast<std::ptrdiff_t>(width), 0.0F);
-      }
+void PingSimulator::blank(int platform, std::span<float> samples, std::size_t begin,
+                          std::size_t end) const {
+  const std::size_t width = recording_of(scenario_).components(),
+                    row = samples.size() / channels_of(scenario_);
+  for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
+    if (scenario_.arrays[a].platform != platform) continue;
+    const std::size_t first = first_channel(scenario_, static_cast<int>(a));
+    for (std::size_t n = 0; n < scenario_.arrays[a].phones.size(); ++n) {
+      const std::span<float> channel = samples.subspan((first + n) * row, row);
+      std::fill(channel.begin() + static_cast<std::ptrdiff_t>(begin * width),
+                channel.begin() + static_cast<std::ptrdiff_t>(end * width), 0.0F);
     }
-  };
-  silence(record.transmitter, 0.0);
-  if (!scenario_.pings.continuous) return;  // such a record receives no other ping
-  double longest = 0.0;
-  for (std::size_t t = 0; t < scenario_.transmitters.size(); ++t)
-    longest = std::max(longest, pulse(static_cast<int>(t)).duration());
-  const double received = static_cast<double>(recording.samples) / recording.sample_rate;
-  const auto since = [&](const Transmission& sent) { return sent.time - record.start_time; };
-  const auto own = transmissions_.begin() + (record.ping - 1);
-  for (auto sent = own; sent != transmissions_.begin() && since(*std::prev(sent)) > -longest;) {
-    --sent;
-    silence(sent->transmitter, since(*sent));
   }
-  for (auto sent = std::next(own); sent != transmissions_.end() && since(*sent) < received; ++sent)
-    silence(sent->transmitter, since(*sent));
+}
+
+// What a stream has around its pings.
+
+namespace {
+
+/// A record that is a part of a stream.
+PingRecord part_of_stream(const Scenario& scenario, const PingSimulator::StreamPart& part) {
+  PingRecord record;
+  record.ping = part.ping;
+  record.recording = recording_of(scenario);
+  record.recording.start = 0.0;
+  record.recording.samples = part.samples;
+  record.start_time = static_cast<double>(part.first) / record.recording.sample_rate;
+  record.phones.resize(channels_of(scenario));
+  record.pressure.assign(record.phones.size() * part.samples * record.recording.components(), 0.0F);
+  return record;
+}
+
+}  // namespace
+
+std::vector<float> PingSimulator::surroundings(const StreamPart& part,
+                                               ReceiverElectronics::Carried& carried) const {
+  PingRecord record = part_of_stream(scenario_, part);
+  const auto ahead = static_cast<std::int64_t>(receivers_.ahead(record.recording));
+  if (!receivers_.is_flat() && carried.empty()) carried = surroundings(record, -ahead, 2 * ahead);
+  interference_.add(record.samples(), ahead);
+  noise_.add(record.samples(), ahead);
+  if (!receivers_.is_flat()) receivers_.respond(record.pressure, record.recording, carried);
+  return std::move(record.pressure);
+}
+
+std::vector<ReceivedPath> PingSimulator::ships(const StreamPart& part) const {
+  PingRecord record = part_of_stream(
+      scenario_, {.ping = part.ping, .first = part.first, .samples = part.samples > 0 ? 1U : 0U});
+  return interference_.add(record.samples());
+}
+
+void PingSimulator::convert(std::span<float> samples, std::size_t row) const {
+  Recording recording = recording_of(scenario_);
+  recording.samples = row;
+  receivers_.convert(samples, recording);
 }
 
 }  // namespace asdic::detail

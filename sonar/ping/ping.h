@@ -62,13 +62,29 @@ class PingSimulator {
   /// From now on each ping tells its steps, from its own thread.
   void tell_steps(TellStep tell) { tell_step_ = std::move(tell); }
   /// The same before noise, blanking and the receivers: what is received of this ping alone.
-  /// Streams add these up (sonar/ping/stream.h) and complete() the sum.
+  /// Streams add these up (sonar/ping/live_stream.h).
   [[nodiscard]] PingRecord sound(int ping) const { return sound(ping, transmission(ping)); }
   [[nodiscard]] PingRecord sound(int ping, const Transmission& sent,
                                  const ChoosePart& part = {}) const;
-  /// Adds what does not come of a ping: noise through the receivers, blanking, conversion.
-  /// \param carried  of the part of the stream before, and for the next; null: a ping by itself
-  void complete(PingRecord& record, ReceiverElectronics::Carried* carried = nullptr) const;
+
+  /// Samples of a stream, counted from the start of the scenario.
+  struct StreamPart {
+    int ping = 1;  ///< the latest: arrays have its shapes
+    std::int64_t first = 0;
+    std::size_t samples = 0;
+  };
+  /// The sea's noise and ships in part of a stream, through the receivers. \param carried  of the
+  /// part before it, and for the next; empty: it is the first   \return [channels × samples ×
+  /// components] [Pa]
+  [[nodiscard]] std::vector<float> surroundings(const StreamPart& part,
+                                                ReceiverElectronics::Carried& carried) const;
+  /// How ships are received at a part's first sample.
+  [[nodiscard]] std::vector<ReceivedPath> ships(const StreamPart& part) const;
+  /// Phones of a platform receive nothing in some samples of a record: it sends. \param samples
+  /// [channels × row × components]   \param begin, end  within the row
+  void blank(int platform, std::span<float> samples, std::size_t begin, std::size_t end) const;
+  /// Analogue-to-digital conversion of all that is received.
+  void convert(std::span<float> samples, std::size_t row) const;
 
   /// What a study asks of a ping when it asks for no samples: legs, echoes and the summary of
   /// simulate(), bit for bit, and the places of things. Nothing is synthesised and no noise is
@@ -150,9 +166,10 @@ class PingSimulator {
   [[nodiscard]] Bounces judged_reverberation(const Emission& emission, int array) const;
   [[nodiscard]] double most_samples() const;
   [[nodiscard]] MemoryNeed synthesis_need(const Synthesizer& synthesizer) const;
+  /// Adds what does not come of a ping: noise through the receivers, blanking, conversion.
+  void complete(PingRecord& record) const;
   [[nodiscard]] std::vector<float> surroundings(const PingRecord& record, std::int64_t first,
                                                 std::int64_t samples) const;
-  void blank(PingRecord& record) const;
   void at_step(int ping, double done, std::string_view doing) const {
     if (tell_step_) tell_step_(ping, done, doing);
   }

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "sonar/ping/ping.h"
-#include "sonar/ping/stream.h"
+#include "sonar/ping/stream_parts.h"
 #include "sonar/scenario/carried.h"
 #include "sonar/scenario/sampling.h"
 #include "sonar/synthesis/synthesis_bytes.h"
@@ -31,7 +31,7 @@ MemoryNeed record_need(const Scenario& scenario, double samples, const std::stri
 double PingSimulator::most_samples() const {
   const std::size_t own = recording_of(scenario_).samples;
   return static_cast<double>(
-      scenario_.pings.continuous ? std::max(own, Stream::longest_part(scenario_)) : own);
+      scenario_.pings.continuous ? std::max(own, longest_stream_part(scenario_)) : own);
 }
 
 /// Echoes and reverberation in the band of the pulse.

@@ -4,11 +4,14 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <utility>
 
 #include "raytrace/parallel/stop.h"
 #include "raytrace/propagation.h"
-#include "sonar/ping/stream.h"
+#include "sonar/ping/live_stream.h"
+#include "sonar/ping/stopwatch.h"
 
 namespace asdic::detail {
 namespace {
@@ -39,14 +42,37 @@ std::shared_ptr<PingRecord> make_ping(const PingSimulator& simulator, int ping,
   return record;
 }
 
+/// Puts the stream from this ping to the next one in place of the ping's own sound; of the last one
+/// it is as long as that is received.
+void next_part(const PingSimulator& simulator, PingRecord& record,
+               std::optional<LiveStream>& stream) {
+  Stopwatch watch;
+  const Transmission& sent = simulator.transmission(record.ping);
+  if (!stream) {
+    const std::shared_ptr<const PingSimulator> lent(std::shared_ptr<void>(), &simulator);
+    stream.emplace(lent, std::llround(sent.time * record.recording.sample_rate));
+  }
+  stream->add(record, sent, simulator.pulse(sent.transmitter).duration());
+  const std::size_t samples =
+      record.ping < simulator.pings()
+          ? static_cast<std::size_t>(
+                stream->nearest_sample(simulator.transmission(record.ping + 1).time) -
+                stream->position())
+          : record.recording.samples;
+  record.interference =
+      simulator.ships({.ping = record.ping, .first = stream->position(), .samples = samples});
+  record.pressure = stream->take(samples);
+  record.recording.samples = samples;
+  record.timings.noise += watch.lap();
+}
+
 }  // namespace
 
 int run_pings(const PingSimulator& simulator, const std::function<void(PingRecord&&)>& sink,
               const PingOptions& options) {
   const int count = simulator.pings();
   const bool continuous = simulator.scenario().pings.continuous;
-  Stream stream(simulator.scenario());
-  ReceiverElectronics::Carried carried;
+  std::optional<LiveStream> stream;
   int next = 1, done = 0;
   bool over = false;
   const std::size_t in_flight = pings_in_flight(simulator);
@@ -67,10 +93,7 @@ int run_pings(const PingSimulator& simulator, const std::function<void(PingRecor
               tbb::filter_mode::serial_in_order, [&](const std::shared_ptr<PingRecord>& record) {
                 over = over || !record;  // what follows one that is missing is none of ours
                 if (over) return;
-                if (continuous) {
-                  stream.take(*record);
-                  simulator.complete(*record, &carried);
-                }
+                if (continuous) next_part(simulator, *record, stream);
                 sink(std::move(*record));
                 ++done;
                 if (options.progress) options.progress(done);

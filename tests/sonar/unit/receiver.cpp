@@ -122,12 +122,14 @@ TEST(BandPass, SeesNoGapsBetweenThePartsOfAStream) {
   s.pings.recording_duration = 1.0;
   s.pings.continuous = true;
   const PingSimulator simulator(s);
+  Scenario parted = s;  // each ping by itself
+  parted.pings.continuous = false;
+  const PingSimulator separate(parted);
   std::vector<float> joined, apart;
   run_pings(simulator, [&](PingRecord&& record) {
     joined.insert(joined.end(), record.pressure.begin(),
                   record.pressure.begin() + std::ptrdiff_t(record.recording.samples));
-    PingRecord alone = simulator.sound(record.ping);
-    simulator.complete(alone);
+    const PingRecord alone = separate.simulate(record.ping);
     apart.insert(apart.end(), alone.pressure.begin(), alone.pressure.begin() + 5600);
   });
   EXPECT_LT(outside(joined), 1e-9);

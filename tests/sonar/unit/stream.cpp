@@ -1,4 +1,4 @@
-#include "sonar/ping/stream.h"
+#include "sonar/ping/stream_parts.h"
 
 #include <gtest/gtest.h>
 
@@ -70,7 +70,7 @@ TEST(Stream, IsTheSumOfItsPingsWithoutGaps) {
                                            record.pressure.begin() + std::ptrdiff_t((c + 1) * n));
                         }),
               4);
-    EXPECT_EQ(longest, Stream::longest_part(s));
+    EXPECT_EQ(longest, longest_stream_part(s));
 
     std::vector<std::vector<float>> expected(rows.size());
     for (int ping = 1; ping <= 4; ++ping) {
