@@ -8,6 +8,7 @@
 #include "io/scenario/catalogue.h"
 #include "processing/ping_processor.h"
 #include "serve/client_names.h"
+#include "serve/listen_request.h"
 #include "serve/ping_request.h"
 #include "serve/session_limits.h"
 
@@ -64,6 +65,8 @@ std::span<const SettingsSection> settings_sections() {
        [](std::string_view) { return serve::ping_settings(); }},
       {"serve", "update", "keys of the command update",
        [](std::string_view) { return serve::update_settings(); }},
+      {"serve", "listen", "keys of the command listen",
+       [](std::string_view) { return serve::listen_settings(); }},
       {"serve", "limits", "what a client may ask for: --limit", of_struct<serve::SessionLimits>}};
   return all;
 }

@@ -10,6 +10,7 @@
     Client.unix("sonar.sock")                                      # or one that is running
     Client.tcp(4711, token=open("token").read().strip())
 """
+import collections
 import json
 import socket
 import subprocess
@@ -45,6 +46,20 @@ class Ping:
         self.replica = answer.get("replica", {}).get("values")
 
 
+class Block:
+    """Samples of all phones that were received together.
+
+    number   in the session, from 0
+    time     of the first sample [s]
+    samples  [channels × samples] pressure [Pa]: float32, or complex64 baseband
+    behind   after its last sample, by the clock [s]
+    """
+
+    def __init__(self, line, samples):
+        self.number, self.time, self.behind = line["block"], line["time"], line["behind"]
+        self.samples = samples
+
+
 class Client:
     """One connection; a client of several threads needs a lock. Commands are carried out in order.
     With several under way (send, receive), a refusal may overtake the answers of those that wait:
@@ -54,6 +69,8 @@ class Client:
     def __init__(self, reader, writer, token=None, when_full="busy", close=()):
         self._reader, self._writer, self._close = reader, writer, close
         self._id = 0
+        self._heard = collections.deque()               # blocks that came while an answer was waited for
+        self.scheduled = collections.deque(maxlen=1000) # what is known of pings of the schedule
         hello = {"asdic": 1, "when_full": when_full}
         if token is not None:
             hello["token"] = token
@@ -114,6 +131,31 @@ class Client:
         """Keys: time, platform, array, targets, wind_speed, sound_speed, noise, seed, recording."""
         return self.command("update", **fields)[0]
 
+    def listen(self, **fields):
+        """→ dict. Keys: block, seconds, schedule, stop. The samples: blocks()"""
+        return self.command("listen", **fields)[0]
+
+    def blocks(self):
+        """Yields each Block as it comes, until it was listened to for `seconds`, or `stop`. Commands
+        may be given meanwhile.
+        """
+        while True:
+            heard = self._heard.popleft() if self._heard else self._event(*self.receive())
+            if heard is None:
+                return
+            yield heard
+
+    def _event(self, line, samples):
+        """A Block; None after the last one."""
+        while "block" not in line:
+            if line.get("listening") is False:
+                return None
+            if "scheduled" not in line:
+                raise Refused(line.get("error", {}))
+            self.scheduled.append(line)
+            line, samples = self.receive()
+        return Block(line, samples)
+
     def state(self):
         return self.command("state")[0]
 
@@ -129,6 +171,12 @@ class Client:
         """→ answer, samples. \\throws Refused"""
         sent = self.send(command, **fields)
         answer, samples = self.receive()
+        while "id" not in answer:  # it answers no command
+            if "scheduled" in answer:
+                self.scheduled.append(answer)
+            else:
+                self._heard.append(self._event(answer, samples))
+            answer, samples = self.receive()
         if not answer["ok"]:
             raise Refused(answer["error"])
         assert answer["id"] == sent
@@ -149,13 +197,10 @@ class Client:
             raise ConnectionError("the server has closed the connection")
         answer = json.loads(line)
         what = answer.get("samples", {})
-        if "bytes" not in what:
-            return answer, None
-        pulse = answer.get("replica")
-        is_complex = len(what["shape"]) == 3  # real and imaginary part
-        samples = self._numbers(what, is_complex)
-        if pulse is not None:
-            pulse["values"] = self._numbers(pulse, is_complex)
+        is_complex = len(what.get("shape", ())) == 3  # real and imaginary part
+        samples = self._numbers(what, is_complex) if "bytes" in what else None
+        if "replica" in answer:
+            answer["replica"]["values"] = self._numbers(answer["replica"], is_complex)
         return answer, samples
 
     def _numbers(self, what, is_complex):

@@ -103,6 +103,7 @@ std::string greeting_line(const Scenario& scenario, const Pace& pace, const std:
 std::string ping_line(const ServedPing& served, const PingRecord& record,
                       const Scenario& scenario) {
   OrderedJson line = answer(served.id, true);
+  if (served.scheduled) line = {{"scheduled", true}};
   line["ping"] = record.ping;
   line["time"] = record.start_time;
   line["transmitter"] = scenario.transmitters[static_cast<std::size_t>(record.transmitter)].name;
@@ -144,6 +145,36 @@ std::string ping_line(const ServedPing& served, const PingRecord& record,
   line["latency"] = served.latency;
   line["behind"] = served.behind;
   return text(line);
+}
+
+Answer block_answer(Listening::Block&& block, double behind) {
+  OrderedJson shape{block.channels, block.samples};
+  if (block.components > 1) shape.push_back(block.components);
+  const OrderedJson line{
+      {"block", block.number},
+      {"time", block.time},
+      {"samples", {{"shape", shape}, {"bytes", block.pressure.size() * sizeof(float)}}},
+      {"behind", behind}};
+  return {.line = text(line), .samples = std::move(block.pressure)};
+}
+
+std::string listen_line(const std::string& id, const Scenario& scenario, double time,
+                        std::int64_t block) {
+  OrderedJson line = answer(id, true);
+  line["time"] = time;
+  line["sample_rate"] = recorded_rate(scenario);
+  if (scenario.pings.samples == Samples::baseband) line["carrier"] = recorded_carrier(scenario);
+  line["channels"] = channels_of(scenario);
+  line["block_samples"] = block;
+  line["unit"] = "Pa";
+  line["type"] = "float32";
+  line["byte_order"] = "little";
+  add_warnings(scenario, line);
+  return text(line);
+}
+
+std::string listening_ended_line(double time) {
+  return text({{"listening", false}, {"time", time}});
 }
 
 std::string update_line(const std::string& id, const Scenario& scenario, double now,

@@ -1,9 +1,12 @@
 #pragma once
+#include <cstdint>
 #include <string>
 
 #include "serve/latency.h"
+#include "serve/listening.h"
 #include "serve/pace.h"
 #include "serve/session_limits.h"
+#include "serve/session_state.h"
 #include "sonar/ping/ping_record.h"
 #include "sonar/scenario/scenario.h"
 
@@ -19,9 +22,18 @@ struct ServedPing {
   double latency = 0.0;       ///< from when it was to be sent to when its data were complete [s]
   double behind = 0.0;        ///< it was sent so long after its time [s]
   std::string warning;        ///< about this ping; empty: none
+  bool scheduled = false;     ///< by the schedule: it answers no command
 };
 
+/// A block of what is heard, and its samples. \param behind  after its end, by the clock [s]
+[[nodiscard]] Answer block_answer(Listening::Block&& block, double behind);
+
 // One line of JSON each, without its end.
+/// \param time  of the first sample [s]   \param block  samples of a block
+[[nodiscard]] std::string listen_line(const std::string& id, const Scenario& scenario, double time,
+                                      std::int64_t block);
+/// \param time  of the first sample that is not heard any more [s]
+[[nodiscard]] std::string listening_ended_line(double time);
 [[nodiscard]] std::string greeting_line(const Scenario& scenario, const Pace& pace,
                                         const std::string& version);
 [[nodiscard]] std::string ping_line(const ServedPing& served, const PingRecord& record,

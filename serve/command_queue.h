@@ -1,4 +1,5 @@
 #pragma once
+#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
@@ -36,6 +37,21 @@ class CommandQueue {
     Command command = std::move(waiting_.front());
     waiting_.pop_front();
     return command;
+  }
+
+  /// The same, and none if none has come after a while.
+  std::optional<Command> pop_within(std::chrono::milliseconds most) {
+    {
+      std::unique_lock lock(mutex_);
+      changed_.wait_for(lock, most, [&] { return closed_ || !waiting_.empty(); });
+      if (waiting_.empty()) return std::nullopt;
+    }
+    return pop();
+  }
+  /// Whether no more come, and none is left.
+  [[nodiscard]] bool over() const {
+    const std::lock_guard lock(mutex_);
+    return closed_ && waiting_.empty();
   }
 
   /// No more come; those that are there are still handed out.

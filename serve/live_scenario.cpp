@@ -11,6 +11,7 @@
 #include "serve/command.h"
 #include "serve/motion.h"
 #include "serve/update.h"
+#include "sonar/scenario/sampling.h"
 
 namespace asdic::detail::serve {
 namespace {
@@ -33,10 +34,6 @@ LiveScenario::LiveScenario(ScenarioSource source, DataFolder data, const Session
                       .got = "a scenario past a limit",
                       .expected = std::string(refusal.what()) + " (--limit NAME=VALUE)"});
   }
-  if (state_.scenario.pings.continuous)
-    throw InputError({.where = source_.path.string() + ": pings.continuous",
-                      .got = "true",
-                      .expected = "false: served pings are records of their own"});
 }
 
 LiveScenario::State LiveScenario::read(const Changes& changes) const {
@@ -54,6 +51,7 @@ LiveScenario::State LiveScenario::read(const Changes& changes) const {
   state.scenario.overrides.pop_back();
   state.scenario.pings.count = pings_;
   check_caps(state.scenario, limits_);
+  state.changes = changes;
   return state;
 }
 
@@ -91,11 +89,32 @@ void set_change(std::vector<std::pair<std::string, std::string>>& changes,
 
 }  // namespace
 
+void LiveScenario::listen(double since) {
+  const Scenario& scenario = state_.scenario;
+  if (scenario.pings.recording_start > 0.0)
+    throw Refusal("scenario", refusal_text("recording.start", "a record that begins later",
+                                           "0 for a stream, which has no gaps"));
+  Changes changes = changes_;
+  set_change(changes, "pings.continuous", "true");
+  if (scenario.pings.samples == Samples::baseband) {
+    set_change(changes, "pings.baseband_rate", toml_number(recorded_rate(scenario)));
+    set_change(changes, "pings.carrier", toml_number(recorded_carrier(scenario)));
+  }
+  state_ = read(changes);
+  changes_ = std::move(changes);
+  since_ = since;
+}
+
+void LiveScenario::forget_before(double time) noexcept {
+  if (since_) since_ = std::max(*since_, time);
+}
+
 void LiveScenario::update(const TomlValue& fields, double now) {
   TomlValue document = document_;
   Changes changes = changes_;
   const auto changed = apply_update(
-      fields, {.scenario = state_.scenario, .data = data_, .limits = limits_, .now = now},
+      fields,
+      {.scenario = state_.scenario, .data = data_, .limits = limits_, .now = now, .since = since_},
       document);
   for (const std::string& section : changed)
     set_change(changes, section, inline_toml(*find_at(document, section)));

@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -38,10 +39,14 @@ class LiveScenario {
   /// \throws InputError as read_scenario(), or where the scenario exceeds the limits
   LiveScenario(ScenarioSource source, DataFolder data, const SessionLimits& limits);
 
-  /// A scenario, and a text that is the same for the same one.
+  /// Sections with their values, in the order in which they were first changed.
+  using Changes = std::vector<std::pair<std::string, std::string>>;
+
+  /// A scenario, a text that is the same for the same one, and what it is made of.
   struct State {
     Scenario scenario;
     std::string key;
+    Changes changes = {};
   };
 
   [[nodiscard]] const State& state() const noexcept { return state_; }
@@ -50,6 +55,13 @@ class LiveScenario {
   /// The command `update`: all of it, or nothing. \param fields  of the command
   /// \param now  at which the positions are meant where it does not say [s] \throws Refusal
   void update(const TomlValue& fields, double now);
+  /// From now on tracks keep where things were, from a time on: what is received now was sent and
+  /// struck before. Samples follow without gaps, and their rate stays. \throws Refusal
+  void listen(double since);
+  /// Where things were before that is forgotten [s].
+  void forget_before(double time) noexcept;
+  /// The scenario of other changes than the latest. \throws InputError, Refusal
+  [[nodiscard]] State of(const Changes& changes) const { return read(changes); }
   /// At which the latest change is meant [s]; −∞: there was none.
   [[nodiscard]] double changed() const noexcept { return changed_; }
 
@@ -66,9 +78,6 @@ class LiveScenario {
   [[nodiscard]] State with(const PingChanges& changes, const TomlValue& fields) const;
 
  private:
-  /// Sections in the order in which they were first changed.
-  using Changes = std::vector<std::pair<std::string, std::string>>;
-
   [[nodiscard]] State read(const Changes& changes) const;  // \throws InputError, Refusal
   [[nodiscard]] State read_for_client(const Changes& changes, const TomlValue& fields,
                                       const TomlValue& document) const;
@@ -81,7 +90,8 @@ class LiveScenario {
   SessionLimits limits_;
   TomlValue document_;
   Changes changes_;
-  int pings_ = 1;  // of the file's schedule
+  int pings_ = 1;                // of the file's schedule
+  std::optional<double> since_;  // of which tracks keep where things were [s]
   double changed_ = -infinity;
   State state_;
 };

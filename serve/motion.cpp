@@ -44,6 +44,31 @@ Vec3 on_course(TomlTable& wanted, const Vec3& velocity) {
   return {v * std::sin(course), v * std::cos(course), velocity.z()};
 }
 
+/// Where something was since a time: its turns, and where it was then.
+TomlValue::Array past(const Track& track, double since, double until) {
+  TomlValue::Array line;
+  if (since >= until) return line;
+  line.push_back(waypoint(since, track.at(since).position));
+  for (const Waypoint& turn : track.waypoints)
+    if (turn.time > since && turn.time < until) line.push_back(waypoint(turn.time, turn.position));
+  return line;
+}
+
+/// A place and a velocity as the file has them: in a place, or from there on in a straight line,
+/// after where it was before.
+void set_kinematics(const Kinematics& state, double time, TomlValue::Array line, TomlValue& table) {
+  forget_motion(table);
+  if (line.empty() && state.velocity.isZero(0.0)) {
+    set_key(table, "position", toml_vector(state.position));
+    return;
+  }
+  // A velocity from the scenario's start would lead back to places that were never passed.
+  const double on = state.velocity.isZero(0.0) ? 0.0 : horizon(state, time);
+  line.push_back(waypoint(time, state.position));
+  if (on > 0.0) line.push_back(waypoint(time + on, state.position + on * state.velocity));
+  set_key(table, "waypoints", {.data = std::move(line), .origin = ""});
+}
+
 }  // namespace
 
 TomlValue toml_vector(const Vec3& v) {
@@ -59,24 +84,14 @@ bool has_motion(TomlTable& wanted) {
   return any;
 }
 
-void set_kinematics(const Kinematics& state, double time, TomlValue& table) {
-  forget_motion(table);
-  if (state.velocity.isZero(0.0)) {
-    set_key(table, "position", toml_vector(state.position));
-    return;
-  }
-  // A velocity from the scenario's start would lead back to places that were never passed.
-  const double on = horizon(state, time);
-  TomlValue::Array line{waypoint(time, state.position)};
-  if (on > 0.0) line.push_back(waypoint(time + on, state.position + on * state.velocity));
-  set_key(table, "waypoints", {.data = std::move(line), .origin = ""});
-}
-
-void set_motion(TomlTable& wanted, const Track& now, double time, TomlValue& table) {
+void set_motion(TomlTable& wanted, const Track& now, const MotionTime& when, TomlValue& table) {
+  const double time = when.time;
+  TomlValue::Array before;
+  if (when.since) before = past(now, *when.since, time);
   if (wanted.has("waypoints")) {
     for (const char* key : {"position", "velocity", "speed"})
       if (wanted.has(key)) throw wanted.fault(key, "none of it beside waypoints");
-    TomlValue::Array points;
+    TomlValue::Array points = std::move(before);
     for (TomlTable& point : wanted.tables("waypoints")) {
       points.push_back(waypoint(point.number("time", quantity::time),
                                 point.vector("position", quantity::coordinate)));
@@ -95,7 +110,7 @@ void set_motion(TomlTable& wanted, const Track& now, double time, TomlValue& tab
   } else if (wanted.has("heading_deg") || wanted.has("speed")) {
     state.velocity = on_course(wanted, state.velocity);
   }
-  set_kinematics(state, time, table);
+  set_kinematics(state, time, std::move(before), table);
 }
 
 }  // namespace asdic::detail::serve

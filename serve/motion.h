@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <optional>
 #include <string_view>
 
 #include "io/text/toml_table.h"
@@ -15,13 +16,17 @@ inline constexpr std::array<std::string_view, 5> motion_keys{"position", "waypoi
 /// Whether a command says how something moves, by any of these.
 [[nodiscard]] bool has_motion(TomlTable& wanted);
 
-/// Writes it into the scenario's table of that thing, in place of what stands there. What is not
-/// said goes on as it was. \param now  its track so far   \param time  of position and velocity [s]
-/// \throws InputError naming the command's key
-void set_motion(TomlTable& wanted, const Track& now, double time, TomlValue& table);
+/// When something moves otherwise.
+struct MotionTime {
+  double time = 0.0;  ///< of position and velocity [s]
+  /// From when on its track keeps where it was before [s]; none: it keeps nothing.
+  std::optional<double> since = {};
+};
 
-/// A place and a velocity as the file has them: in a place, or from there on in a straight line.
-void set_kinematics(const Kinematics& state, double time, TomlValue& table);
+/// Writes it into the scenario's table of that thing, in place of what stands there. What is not
+/// said goes on as it was. \param now  its track so far   \throws InputError naming the command's
+/// key
+void set_motion(TomlTable& wanted, const Track& now, const MotionTime& when, TomlValue& table);
 
 [[nodiscard]] TomlValue toml_vector(const Vec3& v);
 

@@ -54,8 +54,8 @@ PingRequest read(const TomlValue& fields, const LiveScenario& live, const Sessio
       ping.changes.values.emplace_back(one.name, std::move(*value));
   if (ping.deliver == Delivery::file && usual != Delivery::file)
     throw reader.fault("deliver", "\"samples\" or \"none\": the server has no --output-dir");
-  if (ping.replica && ping.deliver != Delivery::samples)
-    throw reader.fault("replica", "false without \"deliver\": \"samples\": files have it");
+  if (ping.replica && ping.deliver == Delivery::file)
+    throw reader.fault("replica", "false with \"deliver\": \"file\": files have it");
   reader.finish();
   return ping;
 }
@@ -67,7 +67,7 @@ void PingRequest::describe(Fields& field) {
   field("elevation", elevation, quantity::elevation,
         "of the beam, positive up; default: the scenario's");
   field("deliver", deliver, "where the samples go; default: a file, if the server writes any");
-  field("replica", replica, "whether the pulse follows the samples, for a matched filter");
+  field("replica", replica, "whether the pulse follows, after the samples, for a matched filter");
 }
 
 SettingsList ping_settings() {

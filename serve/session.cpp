@@ -41,8 +41,21 @@ const AnyCommand& Session::known(const Command& command) const {
 }
 
 Answer Session::execute(const Command& command) {
+  return guarded(command, [&] { return known(command).run(state_, command); });
+}
+
+std::optional<Answer> Session::finish(const Command& command, const std::function<void()>& then) {
+  Answer answer = guarded(command, [&] {
+    then();
+    return Answer{};
+  });
+  if (answer.line.empty()) return std::nullopt;
+  return answer;
+}
+
+Answer Session::guarded(const Command& command, const std::function<Answer()>& run) {
   try {
-    return known(command).run(state_, command);
+    return run();
   } catch (const Refusal& refusal) {
     return refusal_answer(command.id, refusal.code(), refusal.what());
   } catch (const MemoryError& error) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -28,9 +29,15 @@ class Session {
   [[nodiscard]] double wait(const Command& command) const;
   [[nodiscard]] Answer execute(const Command& command);
 
+  /// What an answer leaves to be done after it. \return a refusal, if it could not be
+  [[nodiscard]] std::optional<Answer> finish(const Command& command,
+                                             const std::function<void()>& then);
+  [[nodiscard]] SessionState& state() noexcept { return state_; }
+
   [[nodiscard]] const LatencyLog& latency() const noexcept { return state_.latency; }
 
  private:
+  [[nodiscard]] Answer guarded(const Command& command, const std::function<Answer()>& run);
   [[nodiscard]] const AnyCommand& known(const Command& command) const;
 
   SessionState state_;

@@ -30,23 +30,32 @@ SessionState::SessionState(const SessionSettings& common, std::function<double()
                   .share(static_cast<double>(settings.limits.memory_bytes), "memory_bytes")),
       propagation_(std::make_shared<SharedPropagation>(settings.limits.kept_bytes)) {}
 
+double SessionState::at(double seconds) const {
+  return (seconds - start) * settings.pace.factor.value_or(1.0);
+}
+
+double SessionState::clock_at(double time) const {
+  return start + time / settings.pace.factor.value_or(1.0);
+}
+
 double SessionState::now() const {
-  if (settings.pace.by_the_clock()) return (clock() - start) * *settings.pace.factor;
+  if (settings.pace.by_the_clock()) return at(clock());
+  if (listening) return listening->time();
   return schedule.next(live.state().scenario).time;
 }
 
-const PingSimulator& SessionState::simulator_of(LiveScenario::State state) {
+std::shared_ptr<const PingSimulator> SessionState::simulator_of(LiveScenario::State state) {
   const auto found = std::find_if(simulators_.begin(), simulators_.end(),
                                   [&](const Simulator& one) { return one.key == state.key; });
   if (found != simulators_.end()) {
     simulators_.splice(simulators_.begin(), simulators_, found);
   } else {
-    auto made = std::make_unique<PingSimulator>(std::move(state.scenario), propagation_, budget_);
+    auto made = std::make_shared<PingSimulator>(std::move(state.scenario), propagation_, budget_);
     if (!std::exchange(judged_, true)) made->judge_paths();
     simulators_.push_front({.key = std::move(state.key), .simulator = std::move(made)});
     if (simulators_.size() > most_simulators) simulators_.pop_back();
   }
-  return *simulators_.front().simulator;
+  return simulators_.front().simulator;
 }
 
 std::filesystem::path SessionState::next_file() {

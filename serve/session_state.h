@@ -9,6 +9,7 @@
 
 #include "io/ping/ping_file.h"
 #include "serve/latency.h"
+#include "serve/listening.h"
 #include "serve/live_scenario.h"
 #include "serve/pace.h"
 #include "serve/ping_schedule.h"
@@ -35,6 +36,8 @@ struct Answer {
   std::string line;
   std::vector<float> samples = {};  ///< little-endian float32 after the line; none: nothing follows
   bool last = false;                ///< the connection is closed after it
+  /// What is done once it is delivered, as the rest of its command.
+  std::function<void()> then = {};
 };
 
 /// What a session is in the middle of: what its commands look at, and change.
@@ -51,10 +54,16 @@ class SessionState {
   PingSchedule schedule;
   int pings = 0;  ///< done
   LatencyLog latency;
+  /// From the first `listen` on.
+  std::unique_ptr<Listening> listening;
+  /// Hands out what answers no command. \return false if there is nobody any more
+  std::function<bool(Answer)> tell = [](const Answer&) { return false; };
 
-  [[nodiscard]] double now() const;  ///< of the scenario [s]
+  [[nodiscard]] double now() const;                  ///< of the scenario [s]
+  [[nodiscard]] double at(double clock) const;       ///< the scenario's time at a time of the clock
+  [[nodiscard]] double clock_at(double time) const;  ///< and back; by the clock alone
   /// A simulator of a scenario, or the one that was made of it not long ago.
-  const PingSimulator& simulator_of(LiveScenario::State state);
+  std::shared_ptr<const PingSimulator> simulator_of(LiveScenario::State state);
   /// For the next ping: sessions write into folders of their own, which nobody had before, so
   /// nothing is overwritten.
   [[nodiscard]] std::filesystem::path next_file();
@@ -62,7 +71,7 @@ class SessionState {
  private:
   struct Simulator {
     std::string key;
-    std::unique_ptr<PingSimulator> simulator;
+    std::shared_ptr<const PingSimulator> simulator;
   };
 
   bool judged_ = false;                             // what bounces leave out: at the first ping

@@ -1,9 +1,12 @@
 #include "serve/session_worker.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include "raytrace/parallel/stop.h"
 #include "raytrace/propagation.h"
+#include "serve/answers.h"
+#include "serve/sent_ping.h"
 
 namespace asdic::detail::serve {
 namespace {
@@ -25,9 +28,25 @@ SessionWorker::~SessionWorker() {
 
 bool SessionWorker::offer(Command command) {
   ++in_hand_;
+  std::optional<Hold> hold;
+  if (command.name == "ping" || command.name == "update")
+    hold = Hold{.received = command.received, .said = number_said(command.fields, "time")};
+  const std::lock_guard lock(mutex_);
+  holds_.push_back(hold);
   if (queue_.push(std::move(command))) return true;
+  holds_.pop_back();
   --in_hand_;
   return false;
+}
+
+/// The oldest command is done.
+void SessionWorker::release() {
+  {
+    const std::lock_guard lock(mutex_);
+    holds_.pop_front();
+  }
+  --in_hand_;
+  wake_.notify_all();
 }
 
 void SessionWorker::stop() {
@@ -56,6 +75,7 @@ void SessionWorker::run() {
   try {
     serve();
   } catch (const std::exception& error) {
+    if (turn_.owns_lock()) turn_.unlock();
     engine_.settings.report(error.what());
     ways_.deliver(refusal_answer("null", "run",
                                  "the session could not begin; the server's log says why", true));
@@ -71,20 +91,125 @@ void SessionWorker::serve() {
   ways_.deliver(session.greeting());
   begun_ = true;
   ways_.goes_on();
+  session.state().tell = [this](Answer answer) {
+    ways_.deliver(std::move(answer));
+    turn_.unlock();
+    const bool goes_on = wait_for_the_reader();
+    turn_.lock();
+    return goes_on;
+  };
+  std::jthread blocks;  // by the clock, of what is heard; it ends before the session does
   bool last = false;
   while (!last) {
-    const auto command = queue_.pop();
+    const auto command = next_command(session);
     if (!command) return;
     ways_.goes_on();
-    if (wait(session.wait(*command)) && wait_for_the_reader()) {
-      const std::lock_guard lock(engine_.busy);
-      Answer answer = answer_to(session, *command);
-      last = answer.last;
-      ways_.deliver(std::move(answer));
-    } else {
+    if (wait(session.wait(*command)) && wait_for_the_reader())
+      carry_out(session, *command, last);
+    else
       ways_.deliver(refusal_answer(command->id, "closing", "the server is being stopped"));
+    release();
+    if (session.state().listening && engine_.settings.pace.by_the_clock() && !blocks.joinable())
+      blocks =
+          std::jthread([this, &session](const std::stop_token& over) { hand_out(session, over); });
+  }
+}
+
+void SessionWorker::carry_out(Session& session, const Command& command, bool& last) {
+  turn_ = std::unique_lock(engine_.busy);
+  Answer answer = answer_to(session, command);
+  last = answer.last;
+  const std::function<void()> then = std::move(answer.then);
+  ways_.deliver(std::move(answer));
+  if (then) {
+    try {
+      std::optional<Answer> refused;
+      until_stopped(call_off_.get_token(), [&] { refused = session.finish(command, then); });
+      if (refused) ways_.deliver(std::move(*refused));
+    } catch (const Interrupted&) {
+      ways_.deliver(refusal_answer(command.id, "closing", "the server is being stopped"));
     }
-    --in_hand_;
+  }
+  turn_.unlock();
+}
+
+/// The next one; while a schedule is heard its pings are seen to.
+std::optional<Command> SessionWorker::next_command(Session& session) {
+  for (;;) {
+    const auto& listening = session.state().listening;
+    const auto blocks = listening ? listening->blocks() : std::nullopt;
+    if (!blocks || !blocks->scheduled || !engine_.settings.pace.by_the_clock()) return queue_.pop();
+    send_scheduled(session);
+    if (auto command = queue_.pop_within(std::chrono::milliseconds(20))) return command;
+    if (queue_.over()) return std::nullopt;
+  }
+}
+
+/// Those that leave before long: their sound is made before it is heard.
+void SessionWorker::send_scheduled(Session& session) {
+  SessionState& state = session.state();
+  const double ahead = state.live.state().scenario.pings.interval;
+  turn_ = std::unique_lock(engine_.busy);
+  try {
+    const auto refused = [&] {
+      std::optional<Answer> answer;
+      until_stopped(call_off_.get_token(), [&] {
+        answer = session.finish(
+            Command{}, [&] { serve::send_scheduled(state, state.listening->time() + ahead); });
+      });
+      return answer;
+    }();
+    if (refused) {
+      ways_.deliver(*refused);
+      state.listening->end();
+    }
+  } catch (const Interrupted&) {
+    state.listening->end();
+  }
+  turn_.unlock();
+  wake_.notify_all();
+}
+
+/// Whether no command acts before a time of the scenario.
+bool SessionWorker::may_be_heard(Session& session, double until) {
+  const SessionState& state = session.state();
+  return std::all_of(holds_.begin(), holds_.end(), [&](const auto& hold) {
+    return !hold || hold->said.value_or(state.at(hold->received)) >= until;
+  });
+}
+
+/// Blocks by the clock, each when its last sample is received and all that acts before it is done.
+void SessionWorker::hand_out(Session& session, const std::stop_token& over) {
+  SessionState& state = session.state();
+  Listening& listening = *state.listening;
+  const std::stop_callback wakes(over, [this] { wake_.notify_all(); });
+  constexpr std::chrono::milliseconds a_while(100);
+  bool heard = false;
+  while (!over.stop_requested() && !stopping_) {
+    if (!listening.blocks()) {
+      if (heard) ways_.deliver({.line = listening_ended_line(listening.time())});
+      heard = false;
+      std::unique_lock lock(mutex_);
+      wake_.wait_for(lock, a_while);
+      continue;
+    }
+    heard = true;
+    const double end = listening.next_end(), due = state.clock_at(end);
+    {
+      std::unique_lock lock(mutex_);
+      if (const double early = due - engine_.clock(); early > 0.0) {
+        wake_.wait_for(lock, std::min<std::chrono::duration<double>>(
+                                 std::chrono::duration<double>(early), a_while));
+        continue;
+      }
+      if (!may_be_heard(session, end) || !listening.is_prepared() || ways_.behind()) {
+        wake_.wait_for(lock, std::chrono::milliseconds(5));
+        continue;
+      }
+    }
+    auto block = listening.next();
+    if (!block) continue;
+    ways_.deliver(block_answer(std::move(*block), std::max(0.0, engine_.clock() - due)));
   }
 }
 

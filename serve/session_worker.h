@@ -1,8 +1,10 @@
 #pragma once
 #include <atomic>
 #include <condition_variable>
+#include <deque>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <stop_token>
 #include <thread>
 
@@ -46,11 +48,23 @@ class SessionWorker {
   void wake() { wake_.notify_all(); }  ///< the reader may have caught up
 
  private:
+  /// When a command that is in hand, or waits, acts: what is heard may go so far, and no further.
+  struct Hold {
+    double received = 0.0;       ///< on the clock [s]
+    std::optional<double> said;  ///< time of the scenario [s]
+  };
+
   void run();
   void serve();
+  void carry_out(Session& session, const Command& command, bool& last);
+  std::optional<Command> next_command(Session& session);
+  void send_scheduled(Session& session);
   Answer answer_to(Session& session, const Command& command);
   bool wait(double seconds);
   bool wait_for_the_reader();
+  void release();
+  void hand_out(Session& session, const std::stop_token& over);
+  bool may_be_heard(Session& session, double until);
 
   Engine& engine_;
   Ways ways_;
@@ -59,6 +73,8 @@ class SessionWorker {
   std::atomic<bool> begun_ = false, stopping_ = false;
   std::mutex mutex_;
   std::condition_variable wake_;
+  std::deque<std::optional<Hold>> holds_;  // of commands, in their order
+  std::unique_lock<std::mutex> turn_;      // to compute, while a command is carried out
   std::stop_source call_off_;
   std::jthread grace_;   // calls off
   std::jthread thread_;  // last: it uses all the others

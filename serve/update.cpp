@@ -77,7 +77,8 @@ void update_platforms(Update& to) {
       wanted.finish();  // a key that is misspelt is told as that
       throw wanted.fault("position", "a position, velocity, heading_deg, speed or waypoints");
     }
-    set_motion(wanted, platforms[i].track, to.time, *tables[i]);
+    set_motion(wanted, platforms[i].track, {.time = to.time, .since = to.context.since},
+               *tables[i]);
     wanted.finish();
   }
 }
@@ -149,12 +150,18 @@ void update_target(TomlTable& wanted, const TomlValue& values, const Update& to,
     targets.push_back(std::move(table));
     found = targets.end() - 1;
   }
+  bool known_before = false;
   for (const Target& target : known)
-    if (target.name == name) track = target.track;
+    if (target.name == name) {
+      track = target.track;
+      known_before = true;
+    }
   const bool moves = has_motion(wanted);
   for (const std::string& key : settings)
     if (wanted.has(key)) set_key(*found, key, *values.find(key));
-  if (moves) set_motion(wanted, track, to.time, *found);
+  if (moves)
+    set_motion(wanted, track,
+               {.time = to.time, .since = known_before ? to.context.since : std::nullopt}, *found);
   if (moves && wanted.has("heading_deg") && found->find("position") != nullptr)
     set_key(*found, "heading_deg", *values.find("heading_deg"));  // it lies there
   wanted.finish();

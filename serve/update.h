@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,8 @@ struct UpdateContext {
   const DataFolder& data;
   const SessionLimits& limits;
   double now = 0.0;  ///< of positions, where the command says no time [s]
+  /// From when on tracks keep where things were [s]; none: they keep nothing.
+  std::optional<double> since = {};
 };
 
 /// Writes what a client wants into the tree of a scenario's file. What may change is what its

@@ -7,6 +7,7 @@
 #include "serve/ping_request.h"
 #include "serve/places.h"
 #include "serve/refusal.h"
+#include "serve/sent_ping.h"
 #include "sonar/ping/recorded_replica.h"
 #include "sonar/scenario/sampling.h"
 
@@ -35,7 +36,7 @@ Transmission transmission_of(const SessionState& session, const PingRequest& req
 }  // namespace
 
 double PingCommand::wait(const SessionState& session, const Command& command) {
-  if (!session.settings.pace.by_the_clock()) return 0.0;
+  if (!session.settings.pace.by_the_clock() || session.listening) return 0.0;
   const auto wanted = number_said(command.fields, "time");
   if (!wanted) return 0.0;  // a wrong one is told when the command is carried out
   const double ahead = std::max(0.0, (*wanted - session.now()) / *session.settings.pace.factor);
@@ -45,10 +46,22 @@ double PingCommand::wait(const SessionState& session, const Command& command) {
 Answer PingCommand::run(SessionState& session, const Command& command) {
   const SessionSettings& settings = session.settings;
   const double begin = session.clock();
-  const Delivery usual = settings.output.empty() ? Delivery::none : Delivery::file;
+  const Delivery usual =
+      settings.output.empty() || session.listening ? Delivery::none : Delivery::file;
   PingRequest request = read_ping(command.fields, session.live, settings.limits, usual);
   const Transmission sent = transmission_of(session, request);
   request.changes.transmitter = sent.transmitter;
+  if (session.listening) {
+    if (request.deliver != Delivery::none)
+      throw Refusal(
+          "value",
+          refusal_text("deliver", in_quotes(words(request.deliver)[std::size_t(request.deliver)]),
+                       "\"none\" in a session that listens: its sound comes in blocks"));
+    return send_into_stream(session, command, request, sent);
+  }
+  if (session.live.state().scenario.pings.continuous)
+    throw Refusal("value",
+                  refusal_text("ping", "a scenario with pings.continuous", "\"listen\" before it"));
   ServedPing served{.id = command.id};
   double due = command.received;  // when it was to be sent, on the clock
   if (settings.pace.by_the_clock()) {
@@ -59,9 +72,8 @@ Answer PingCommand::run(SessionState& session, const Command& command) {
     served.behind = std::max(0.0, begin - wanted);
     due = std::max(due, wanted);
   }
-  const PingSimulator& simulator =
-      session.simulator_of(session.live.with(request.changes, command.fields));
-  const Scenario& scenario = simulator.scenario();
+  const auto simulator = session.simulator_of(session.live.with(request.changes, command.fields));
+  const Scenario& scenario = simulator->scenario();
   const int number = session.pings + 1;
   check_places(scenario, number, sent.transmitter, sent.time);
   const double bytes = double(channels_of(scenario)) * double(recording_of(scenario).samples) * 8.0;
@@ -73,7 +85,7 @@ Answer PingCommand::run(SessionState& session, const Command& command) {
     served.warning = "time: " + to_text(sent.time) + " s lies before the latest change, at " +
                      to_text(session.live.changed()) + " s: all is as that says, back in time";
   served.prepare = session.clock() - begin;
-  PingRecord record = simulator.simulate(number, sent);
+  PingRecord record = simulator->simulate(number, sent);
   if (request.deliver == Delivery::file) {
     const double start = session.clock();
     served.file = session.next_file().string();

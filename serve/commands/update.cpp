@@ -1,10 +1,72 @@
 #include "serve/commands/update.h"
 
+#include <algorithm>
+#include <optional>
+
+#include "core/text.h"
 #include "serve/answers.h"
+#include "serve/motion.h"
+#include "serve/refusal.h"
 
 namespace asdic::detail::serve {
 
+namespace {
+
+/// Whether targets or the sea become of another kind, and not only move.
+bool strikes(const TomlValue& fields) {
+  if (fields.find("wind_speed") != nullptr) return true;
+  const TomlValue* targets = fields.find("targets");
+  if (targets == nullptr) return false;
+  const auto otherwise = [](const TomlValue& one) {
+    const auto* table = std::get_if<TomlValue::Table>(&one.data);
+    return table != nullptr && std::any_of(table->begin(), table->end(), [](const auto& entry) {
+             return entry.key != "name" && std::find(motion_keys.begin(), motion_keys.end(),
+                                                     entry.key) == motion_keys.end();
+           });
+  };
+  if (const auto* several = std::get_if<TomlValue::Array>(&targets->data))
+    return std::any_of(several->begin(), several->end(), otherwise);
+  return otherwise(*targets);
+}
+
+/// Of what is heard from a time on; all of it, or nothing.
+Answer update_stream(SessionState& session, const Command& command) {
+  Listening& listening = *session.listening;
+  const double heard = listening.time();
+  const std::optional<double> said = number_said(command.fields, "time");
+  const auto refuse = [&](double least, const char* why) {
+    throw Refusal("value",
+                  refusal_text("time", to_text(*said) + " s", "at least " + to_text(least) + why));
+  };
+  if (said && *said < heard) refuse(heard, " s: what is received before was handed out");
+  if (said && *said < session.live.changed())
+    refuse(session.live.changed(), " s, of the latest change");
+  double time = heard;
+  if (said)
+    time = *said;
+  else if (session.settings.pace.by_the_clock())
+    time = std::max(heard, session.at(command.received));
+  time = std::max(time, session.live.changed());
+  const LiveScenario before = session.live;
+  const std::size_t targets = before.state().scenario.targets.size();
+  session.live.update(command.fields, time);
+  try {
+    listening.change(
+        session, time,
+        strikes(command.fields) || session.live.state().scenario.targets.size() != targets);
+  } catch (...) {
+    session.live = before;
+    throw;
+  }
+  session.live.forget_before(listening.oldest() - tow_memory(before.state().scenario));
+  return {.line = update_line(command.id, session.live.state().scenario, time,
+                              session.clock() - command.received)};
+}
+
+}  // namespace
+
 Answer UpdateCommand::run(SessionState& session, const Command& command) {
+  if (session.listening) return update_stream(session, command);
   session.live.update(command.fields, session.now());
   return {.line = update_line(command.id, session.live.state().scenario, session.now(),
                               session.clock() - command.received)};

@@ -56,8 +56,9 @@ TEST(Session, APingMayBringItsPulse) {
   const std::vector<float> pulse = recorded_replica(scenario, 0);
   EXPECT_TRUE(std::equal(pulse.begin(), pulse.end(),
                          served.last.samples.end() - static_cast<std::ptrdiff_t>(values)));
-  const auto refused = served(R"({"command": "ping", "replica": true})");
-  EXPECT_THAT(refused["error"]["message"].get<std::string>(), HasSubstr("replica"));
+  const auto alone = served(R"({"command": "ping", "replica": true})");
+  EXPECT_EQ(alone["replica"], both["replica"]);
+  EXPECT_EQ(served.last.samples, pulse);
 }
 
 // Before the latest change there was another scenario, which is not kept: that is said.
@@ -448,8 +449,9 @@ TEST(Session, LooksWhereThePhonesOfALineBelowThePlatformAre) {
             "(0 m) and the bottom (1000 m)");
 }
 
-TEST(Session, ContinuousRecordsAreNotServed) {
-  EXPECT_THROW(Served(std::string(support::served_scenario) + "continuous = true\n"), InputError);
+TEST(Session, AContinuousRecordIsListenedTo) {
+  Served served(std::string(support::served_scenario) + "continuous = true\n");
+  EXPECT_THAT(served.refusal(R"({"command": "ping"})"), HasSubstr("\"listen\" before it"));
 }
 
 // By the clock: a ping without a time is sent now; one in the future waits for it.

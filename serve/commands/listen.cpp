@@ -1,0 +1,66 @@
+#include "serve/commands/listen.h"
+
+#include <cmath>
+
+#include "core/text.h"
+#include "serve/answers.h"
+#include "serve/listen_request.h"
+#include "serve/refusal.h"
+#include "serve/sent_ping.h"
+
+namespace asdic::detail::serve {
+namespace {
+
+/// As fast as the client takes it, within the command.
+void hand_out_now(SessionState& session) {
+  Listening& listening = *session.listening;
+  for (;;) {
+    if (listening.blocks() && listening.blocks()->scheduled)
+      send_scheduled(session, listening.next_end());
+    auto block = listening.next();
+    if (!block) break;
+    if (!session.tell(block_answer(std::move(*block), 0.0))) return;
+  }
+  session.tell({.line = listening_ended_line(listening.time())});
+}
+
+}  // namespace
+
+Answer ListenCommand::run(SessionState& session, const Command& command) {
+  const ListenRequest request = read_listen(command.fields);
+  const bool by_the_clock = session.settings.pace.by_the_clock();
+  if (request.stop) {
+    if (!session.listening)
+      throw Refusal("value", refusal_text("stop", "nobody that listens", "listen before"));
+    session.listening->end();
+    return {.line = listen_line(command.id, session.live.state().scenario,
+                                session.listening->time(), 0)};
+  }
+  if (!by_the_clock && !request.seconds)
+    throw Refusal("value",
+                  refusal_text("seconds", "none", "how long, with --pace fast: there is no clock"));
+  if (session.listening && session.listening->blocks())
+    throw Refusal("value", refusal_text("listen", "a session that listens", "\"stop\" before it"));
+  const double now = by_the_clock ? session.at(command.received) : session.now();
+  if (!session.listening) {
+    session.live.listen(0.0);
+    session.listening = std::make_unique<Listening>(session.simulator_of(session.live.state()),
+                                                    session.live.state().changes, now);
+  }
+  Listening& listening = *session.listening;
+  const double rate = listening.rate();
+  Listening::Blocks blocks{.samples = std::max<std::int64_t>(1, std::llround(request.block * rate)),
+                           .scheduled = request.schedule};
+  if (blocks.samples > static_cast<std::int64_t>(session.settings.limits.samples))
+    throw Refusal("limit",
+                  refusal_text("block", std::to_string(blocks.samples) + " samples",
+                               "at most " + std::to_string(session.settings.limits.samples)));
+  if (request.seconds) blocks.end = std::llround(*request.seconds * rate);
+  listening.begin(blocks, now);
+  Answer answer{.line = listen_line(command.id, session.live.state().scenario, listening.time(),
+                                    blocks.samples)};
+  if (!by_the_clock) answer.then = [&session] { hand_out_now(session); };
+  return answer;
+}
+
+}  // namespace asdic::detail::serve

@@ -1,0 +1,118 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "serve/live_scenario.h"
+#include "sonar/ping/live_stream.h"
+
+namespace asdic::detail::serve {
+
+class SessionState;
+
+/// What a session hears, from its first `listen` on: pings that overlap, in a scenario that changes
+/// while they sound.
+///
+/// A change acts where and when it happens. Sound is sent as things are when it leaves, and struck
+/// and received as they are then; what was handed out before stays as it was. So each ping is
+/// received in windows of time, each by the scenario of its own: what belongs to the projector as
+/// it was when the ping left, arrays and noise as they are in the window, wind and what targets are
+/// like as they were half of the delay before it. Where things are is on their tracks, which keep
+/// their past. All of it may be called by two threads at once, one of which takes blocks.
+class Listening {
+ public:
+  /// How the sound is handed out.
+  struct Blocks {
+    std::int64_t samples = 1;         ///< of a block
+    std::optional<std::int64_t> end;  ///< sample at which it ends; none: it does not
+    bool scheduled = false;           ///< pings of the schedule are sent by themselves
+  };
+  struct Block {
+    std::int64_t number = 0;  ///< of the session, from 0
+    double time = 0.0;        ///< of its first sample [s]
+    std::size_t channels = 0, samples = 0, components = 1;
+    std::vector<float> pressure;  ///< [channels × samples × components] [Pa]
+  };
+
+  /// \param begin  [s]
+  Listening(std::shared_ptr<const PingSimulator> simulator, LiveScenario::Changes changes,
+            double begin);
+
+  [[nodiscard]] double rate() const noexcept { return rate_; }
+  [[nodiscard]] std::int64_t position() const;
+  [[nodiscard]] double time() const;  ///< of the next sample [s]
+  /// A ping leaves at the sample next to its time.
+  [[nodiscard]] double whole_samples(double time) const;
+
+  /// From now on. What was not handed out before `from` is not any more. \param from  [s]
+  void begin(const Blocks& blocks, double from);
+  void end();  ///< no more, until it begins again
+  /// None: nobody listens.
+  [[nodiscard]] std::optional<Blocks> blocks() const;
+  /// By whoever sends scheduled pings: all that leave before a time are in the stream [s].
+  void scheduled_until(double time);
+  /// Whether the next block may be made as far as those go.
+  [[nodiscard]] bool is_prepared() const;
+  /// The end of the next block [s].
+  [[nodiscard]] double next_end() const;
+  [[nodiscard]] std::optional<Block> next();  ///< none: it is over
+
+  /// Adds a ping's sound. \param state  of the scenario for it, with what it has of its own
+  /// \return its record, without pressure \throws InputError
+  [[nodiscard]] PingRecord send(SessionState& session, int number, const Transmission& sent,
+                                const LiveScenario::State& state);
+  /// All that is received from a time on, as the session's scenario has become. \param strikes
+  /// whether targets or the sea are of another kind, and not only elsewhere \throws InputError, and
+  /// then nothing has changed
+  void change(SessionState& session, double time, bool strikes);
+  /// Before that nothing that still sounds was sent or struck [s].
+  [[nodiscard]] double oldest() const;
+
+ private:
+  struct Change {
+    double time = 0.0;
+    LiveScenario::Changes changes;
+    bool strikes = false;
+  };
+  /// A ping that sounds: how it was sent.
+  struct Sent {
+    int ping = 1;
+    Transmission sent;
+    LiveScenario::Changes own;  // sections that are its own
+  };
+  /// By which scenario a ping is received, up to a sample.
+  struct Window {
+    std::int64_t from = 0, to = 0;
+    LiveScenario::Changes changes;
+  };
+  struct Part {
+    int ping = 1;
+    Window window;
+    PingRecord sound;
+  };
+  [[nodiscard]] Part part_of(SessionState& session, const Sent& ping, Window window) const;
+  [[nodiscard]] std::vector<LiveStream::Sounding> sounding() const;
+  [[nodiscard]] const Change& change_at(double time) const;
+  [[nodiscard]] std::vector<Window> windows(const Sent& ping, std::int64_t from,
+                                            std::int64_t end) const;
+  void forget();
+
+  double rate_;
+  mutable std::mutex mutex_;  // of what a block is taken from
+  LiveStream stream_;
+  Blocks blocks_;
+  bool active_ = false;
+  std::int64_t number_ = 0;
+  double scheduled_until_ = 0.0;
+  // Of the thread that carries out commands alone:
+  std::vector<Change> changes_;  // at least one, by their times
+  std::vector<Sent> sent_;
+};
+
+/// How long a towed line keeps where its tow point was [s].
+[[nodiscard]] double tow_memory(const Scenario& scenario);
+
+}  // namespace asdic::detail::serve

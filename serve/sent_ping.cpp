@@ -1,0 +1,85 @@
+#include "serve/sent_ping.h"
+
+#include <algorithm>
+
+#include "core/text.h"
+#include "serve/answers.h"
+#include "serve/refusal.h"
+#include "sonar/ping/recorded_replica.h"
+
+namespace asdic::detail::serve {
+namespace {
+
+/// A ping and its answer. \param moved  its time is not the schedule's
+Answer send(SessionState& session, ServedPing served, const Transmission& sent,
+            const LiveScenario::State& state, double due, bool moved, bool with_replica) {
+  Listening& listening = *session.listening;
+  const int number = session.pings + 1;
+  const PingRecord record = listening.send(session, number, sent, state);
+  ++session.pings;
+  session.schedule.sent(sent, moved);
+  session.live.forget_before(listening.oldest() - tow_memory(state.scenario));
+  served.latency = std::max(0.0, session.clock() - due);
+  session.latency.add(served.latency);
+  std::vector<float> pulse;
+  if (with_replica) pulse = recorded_replica(state.scenario, sent.transmitter);
+  served.replica = pulse.size();
+  return {.line = ping_line(served, record, state.scenario), .samples = std::move(pulse)};
+}
+
+}  // namespace
+
+Answer send_into_stream(SessionState& session, const Command& command, const PingRequest& request,
+                        Transmission sent) {
+  Listening& listening = *session.listening;
+  const SessionSettings& settings = session.settings;
+  const double begin = session.clock();
+  ServedPing served{.id = command.id};
+  const double heard = listening.time();
+  const bool by_the_clock = settings.pace.by_the_clock();
+  if (!request.time) {
+    if (by_the_clock) sent.time = session.at(command.received);
+    sent.time = std::max(sent.time, heard);
+  }
+  sent.time = listening.whole_samples(sent.time);
+  if (sent.time < heard) {
+    if (request.time && *request.time < heard)
+      throw Refusal("value", refusal_text("time", to_text(*request.time) + " s",
+                                          "at least " + to_text(heard) +
+                                              " s: what is received before was handed out"));
+    sent.time = heard;
+  }
+  double due = command.received;
+  if (by_the_clock) {
+    const double wanted = session.clock_at(sent.time);
+    if (wanted > begin + double(settings.limits.idle_seconds))
+      throw Refusal("limit", refusal_text("time", to_text(sent.time) + " s",
+                                          "a ping at most idle_seconds ahead of the clock"));
+    served.behind = std::max(0.0, begin - wanted);
+    due = std::max(due, wanted);
+  }
+  const LiveScenario::State state = session.live.with(request.changes, command.fields);
+  served.prepare = session.clock() - begin;
+  return send(session, std::move(served), sent, state, due, true, request.replica);
+}
+
+void send_scheduled(SessionState& session, double before) {
+  for (;;) {
+    const Scenario& scenario = session.live.state().scenario;
+    Transmission sent = session.schedule.next(scenario);
+    if (sent.time >= before) {
+      session.listening->scheduled_until(sent.time);
+      return;
+    }
+    const double heard = session.listening->time();
+    sent.time = session.listening->whole_samples(sent.time);
+    const bool late = sent.time < heard;  // the schedule began before anybody listened
+    if (late) sent.time = heard;
+    const double due = session.settings.pace.by_the_clock()
+                           ? std::max(session.clock(), session.clock_at(sent.time))
+                           : session.clock();
+    session.tell(send(session, {.scheduled = true}, sent, session.live.state(), due, late, false));
+  }
+}
+
+}  // namespace asdic::detail::serve
