@@ -30,6 +30,13 @@ endif()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/ DESTINATION ${CMAKE_INSTALL_DATADIR}/asdic/python COMPONENT program
         FILES_MATCHING PATTERN "*.py" PATTERN "*.js" PATTERN "*.css" PATTERN "*.html" PATTERN "binding" EXCLUDE PATTERN "asdic" EXCLUDE
         PATTERN "__pycache__" EXCLUDE)
+# asdic-moos: a script beside the program, in the build tree as a link
+file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
+file(CREATE_LINK ${PROJECT_SOURCE_DIR}/python/asdic-moos ${PROJECT_BINARY_DIR}/bin/asdic-moos SYMBOLIC)
+install(PROGRAMS ${PROJECT_SOURCE_DIR}/python/asdic-moos DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
+set(manual ${PROJECT_BINARY_DIR}/asdic-moos.1.gz)
+execute_process(COMMAND gzip -9nc ${PROJECT_SOURCE_DIR}/cmake/packages/asdic-moos.1 OUTPUT_FILE ${manual} COMMAND_ERROR_IS_FATAL ANY)
+install(FILES ${manual} DESTINATION ${CMAKE_INSTALL_DATADIR}/man/man1 COMPONENT program)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenarios/ DESTINATION ${CMAKE_INSTALL_DATADIR}/asdic/scenarios COMPONENT program)
 # The pages, so that their links lead somewhere.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/asdic COMPONENT program

@@ -1,0 +1,605 @@
+"""The sonar of a vehicle: what is known of vehicle, targets and array, the pings made of it by
+`asdic serve`, and what becomes of them. MOOS and ROS tell it what arrives and publish what it emits.
+
+Threads: inputs may come from any. One thread speaks with the server and runs the receiver, one answers
+requests of sound paths, one lets results go when they are due.
+"""
+import heapq
+import itertools
+import math
+import os
+import queue
+import threading
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from . import paths, quantities, receiver
+from .link import Client, Link, Refused
+from .quantities import Wrong, shown
+from .tracker import Tracker, TrackerSettings
+
+MOST_PINGS_WAITING = 8
+MOST_REQUESTS_WAITING = 16
+MOST_TARGETS = 64
+MOST_HELD_BYTES = 512 << 20  # of samples that are not due
+ERRORS_PER_SECOND = 20
+MOST_SKEW = 10.0             # of a stamp against the clock [s]; beyond it counts as now
+
+
+@dataclass
+class Settings:
+    """As the mission file or ROS's parameters have them."""
+
+    scenario: str = ""            # of an own server, and for sound paths
+    arguments: list = field(default_factory=list)  # of `asdic serve`, further ones
+    program: str = "asdic"
+    socket: str = ""              # of a running server, instead
+    tcp: int = 0
+    token_file: str = ""
+    pace: str = "clock"           # "clock": of the middleware; "fast": results as soon as they are had
+    factor: float = 1.0           # how fast that clock goes
+    platform: str = ""            # the first, where there are several
+    array: str = ""
+    array_follows_heading: bool = False
+    delivery: str = "auto"        # "pings": the record of each; "listen": a stream; "none"
+    receiver: bool = True
+    receiver_options: list = field(default_factory=list)
+    most_detections: int = 50
+    block: float = 1.0            # of samples [s]
+    update: float = 1.0           # while listening, between changes [s]
+    folder: str = "asdic-data"
+    files_kept: int = 100         # pings whose files are kept
+    tracker: TrackerSettings = field(default_factory=TrackerSettings)
+
+
+class Sonar:
+    """
+    clock  the middleware's time [s], a function
+    emit   called with (kind, dict) for each result, from threads of this class. Kinds: "ping",
+           "samples", "files", "detection", "track", "truth", "latency", "paths", "error", "ready"
+    """
+
+    def __init__(self, settings, clock, emit):
+        self.settings, self._clock, self._emit = settings, clock, emit
+        self._lock = threading.Lock()
+        self._platform, self._targets, self._removed = {}, {}, set()
+        self._phones = None          # (places, time)
+        self._fresh = {"platform": False, "phones": False, "targets": set()}
+        self._jobs = queue.Queue(MOST_PINGS_WAITING)
+        self._requests = queue.Queue(MOST_REQUESTS_WAITING)
+        self._stop = threading.Event()
+        self._held, self._held_bytes, self._count = [], 0, itertools.count()
+        self._due = threading.Condition()
+        self._errors = [0.0, 0, 0]   # second, told in it, held back
+        self._files = []
+        self._link, self.listening, self._format, self._origin = None, False, None, 0.0
+        self._velocity, self._place = (0.0, 0.0), None
+        self._tracker = Tracker(settings.tracker)
+        self._threads = [threading.Thread(target=t, daemon=True, name=t.__name__.strip("_"))
+                         for t in (self._work, self._answer_requests, self._let_go)]
+
+    def start(self):
+        for thread in self._threads:
+            thread.start()
+
+    def close(self):
+        self._stop.set()
+        with self._due:
+            self._due.notify_all()
+        link = self._link
+        if link is not None:
+            link.close()
+        for thread in self._threads:
+            thread.join(timeout=5)
+
+    # Inputs ---------------------------------------------------------------------------------------
+
+    def set_platform(self, name, value, where, stamp=None):
+        """name: x, y, depth, heading_deg, speed. \\throws Wrong"""
+        quantity = next(q for q in quantities.PLATFORM if q.key == name)
+        value = quantity.of(value, where)
+        with self._lock:
+            self._platform[name] = (value, self._time_of(stamp))
+            self._fresh["platform"] = True
+
+    def set_target(self, fields, where, stamp=None):
+        """fields: as quantities.keyed() has them of TARGET. \\throws Wrong"""
+        fields = quantities.target_of(fields, where)
+        name = fields["name"]
+        with self._lock:
+            if name not in self._targets and len(self._targets) >= MOST_TARGETS:
+                raise Wrong(f"{where}: {shown(name)}", f"one more than {MOST_TARGETS} targets",
+                            "fewer; remove=true takes one out")
+            if fields.get("remove") == "true":
+                self._targets.pop(name, None)
+                self._removed.add(name)
+            else:
+                self._removed.discard(name)
+                known = self._targets.setdefault(name, {})
+                known.update(fields)
+                known["time"] = self._time_of(stamp)
+                known["where"] = where
+            if len(self._removed) <= MOST_TARGETS:
+                self._fresh["targets"].add(name)
+
+    def set_phones(self, places, stamp=None):
+        """places: as quantities.positions_of() has them"""
+        with self._lock:
+            self._phones = (places, self._time_of(stamp))
+            self._fresh["phones"] = True
+
+    def ping(self, fields, where):
+        """fields: as quantities.ping_of() has them. \\throws Wrong when too many wait"""
+        try:
+            self._jobs.put_nowait((fields, where))
+        except queue.Full:
+            raise Wrong(where, f"{MOST_PINGS_WAITING} pings that wait", "fewer; it is not sent") \
+                from None
+
+    def request_paths(self, asked, where):
+        """asked: as quantities.paths_of() has it. \\throws Wrong"""
+        try:
+            self._requests.put_nowait((asked, where))
+        except queue.Full:
+            raise Wrong(where, f"{MOST_REQUESTS_WAITING} requests that wait",
+                        "fewer; it is not answered") from None
+
+    def error(self, text):
+        """One line; of more than so many a second their number alone is told."""
+        now = time.monotonic()
+        with self._lock:
+            if now - self._errors[0] >= 1.0:
+                held, self._errors = self._errors[2], [now, 0, 0]
+            else:
+                held = 0
+            self._errors[1] += 1
+            over = self._errors[1] > ERRORS_PER_SECOND
+            self._errors[2] += over
+        if held:
+            self._emit("error", {"message": f"{held} more errors came within a second; they are "
+                                            "not told one by one"})
+        if not over:
+            self._emit("error", {"message": " ".join(text.split())[:500]})
+
+    def _time_of(self, stamp):
+        now = self._clock()
+        near = MOST_SKEW * max(self.settings.factor, 1.0)
+        return stamp if stamp is not None and abs(stamp - now) <= near else now
+
+    # The server -----------------------------------------------------------------------------------
+
+    def _work(self):
+        said = None
+        while not self._stop.is_set():
+            try:
+                self._session()
+                said = None
+            except (OSError, Refused, ValueError) as error:
+                if self._stop.is_set():
+                    return
+                if str(error) != said:
+                    said = str(error)
+                    self.error(said)
+            finally:
+                link, self._link = self._link, None
+                if link is not None:
+                    link.close()
+            self._stop.wait(2.0)
+
+    def _connect(self):
+        s = self.settings
+        if s.socket:
+            return Client.unix(s.socket)
+        if s.tcp:
+            token = Path(s.token_file).read_text().strip() if s.token_file else \
+                os.environ.get("ASDIC_TOKEN", "")
+            return Client.tcp(s.tcp, token)
+        words = ["--pace", "fast" if s.pace == "fast" else f"{s.factor:.10g}", *s.arguments]
+        if self._wants_files():
+            Path(s.folder).mkdir(parents=True, exist_ok=True)
+            words += ["--output-dir", s.folder]
+        return Client.start(s.scenario, *words, program=s.program)
+
+    def _wants_files(self):
+        return self.settings.receiver and self.settings.delivery in ("auto", "pings")
+
+    def _session(self):
+        """From the handshake on, until the connection breaks. \\throws OSError, Refused"""
+        link = Link(self._connect(), self._heard)
+        self._link = link
+        self._origin = self._clock()
+        self._check_pace(link.greeting["pace"])
+        state = link.call("state")[0]
+        self._platform_now = self._named(state["platforms"], self.settings.platform, "platform")
+        self._array_now = self._named(state["arrays"], self.settings.array, "array")
+        self._several = {what: len(state[what]) > 1 for what in ("platforms", "arrays", "targets")}
+        self._known_targets = {t["name"] for t in state["targets"]}
+        self._place, self._place_time = list(self._platform_now["position"]), state["time"]
+        self._velocity = tuple(self._platform_now["velocity"][:2])
+        self._files_here = True
+        self._tracker = Tracker(self.settings.tracker)
+        with self._lock:  # a new session knows nothing
+            self._fresh = {"platform": bool(self._platform), "phones": self._phones is not None,
+                           "targets": set(self._targets) | self._removed}
+        self._listen(link)
+        self._emit("ready", {"scenario": link.greeting["scenario"], "listening": self.listening,
+                             "channels": link.greeting["channels"],
+                             "sample_rate": link.greeting["sample_rate"]})
+        for line in link.greeting.get("warnings", []):
+            self._warn(line)
+        updated = time.monotonic()
+        while not self._stop.is_set():
+            try:
+                fields, where = self._jobs.get(timeout=0.1)
+            except queue.Empty:
+                if link.broken:
+                    raise ConnectionError(link.broken)
+                if self.listening and \
+                        (time.monotonic() - updated) * self.settings.factor >= self.settings.update:
+                    updated = time.monotonic()
+                    self._update(self._now())
+                continue
+            self._ping(fields, where)
+
+    def _check_pace(self, pace):
+        wanted = "fast" if self.settings.pace == "fast" else self.settings.factor
+        has = pace if pace == "fast" else 1.0 if pace == "real" else float(pace)
+        if has != wanted:
+            raise ValueError(f"asdic serve: found --pace {pace}, expected --pace {wanted} as the "
+                             "clock goes here")
+
+    @staticmethod
+    def _named(known, name, what):
+        for one in known:
+            if not name or one["name"] == name:
+                return one
+        raise ValueError(f"{what}: found {shown(name)}, expected one of "
+                         + ", ".join(one["name"] for one in known))
+
+    def _now(self):
+        """The scenario's time [s]."""
+        return max(self._clock() - self._origin, 0.0)
+
+    def _listen(self, link):
+        """Begins to hear, where the server can and it is wanted."""
+        s = self.settings
+        self.listening = False
+        wanted = s.delivery == "listen" or s.delivery == "auto" and not s.receiver
+        if not wanted or s.pace == "fast":
+            return
+        try:
+            # its answer comes before its blocks, but is taken by another thread: both wait here
+            with self._due:
+                self._format, _ = link.call("listen", block=s.block)
+            self.listening = True
+        except Refused as no:
+            if no.code != "command" or s.delivery == "listen":
+                raise
+
+    def _heard(self, answer, samples):
+        """A block of a stream."""
+        with self._due:
+            form = self._format
+        self._emit("samples", {
+            "block": answer["block"], "time": self._origin + answer["time"],
+            "sample_rate": form["sample_rate"], "carrier": form.get("carrier", 0.0),
+            "behind": answer.get("behind", 0.0), "data": samples, **self._geometry()})
+
+    def _geometry(self):
+        place = self._place
+        return {"x": place[0], "y": place[1], "depth": place[2]}
+
+    # Changes --------------------------------------------------------------------------------------
+
+    def _update(self, t):
+        """Tells the server what has come. Each thing by itself: one that is refused is told and
+        forgotten. → whether the platform is where the vehicle is
+        """
+        with self._lock:
+            fresh, self._fresh = self._fresh, {"platform": False, "phones": False, "targets": set()}
+            platform, phones = dict(self._platform), self._phones
+            targets = {name: dict(self._targets.get(name, {"remove": True}))
+                       for name in fresh["targets"]}
+            self._removed.clear()
+        ahead, self._place_time = t - self._place_time, t
+        self._place = [self._place[0] + self._velocity[0] * ahead,
+                       self._place[1] + self._velocity[1] * ahead, self._place[2]]
+        good = True
+        if fresh["platform"]:
+            good = self._tell("NAV", t, platform=self._platform_fields(platform, t))
+            if not good:
+                with self._lock:
+                    self._fresh["platform"] = True  # the next ping must not go from elsewhere
+        if fresh["phones"]:
+            self._tell("the array", t, array=self._phone_fields(*phones))
+        elif fresh["platform"] and self.settings.array_follows_heading and \
+                "heading_deg" in platform and phones is None:
+            self._tell("the array", t, array=self._one("array", {
+                "heading_deg": platform["heading_deg"][0]}))
+        for name, target in targets.items():
+            self._update_target(name, target, t)
+        return good
+
+    def _tell(self, what, t, **change):
+        try:
+            if self.settings.pace == "fast":
+                change["time"] = t
+            self._link.call("update", **change)
+            return True
+        except Refused as no:
+            self.error(f"{what}: {no}")
+            return False
+
+    def _one(self, what, fields):
+        """With its name, where there are several."""
+        if self._several[what + "s"]:
+            fields["name"] = (self._platform_now if what == "platform" else self._array_now)["name"]
+        return fields
+
+    def _platform_fields(self, known, t):
+        """The place now, by the latest fix and how it moves."""
+        place, velocity = self._place, self._velocity
+        fields = {}
+        if "speed" in known or "heading_deg" in known:
+            speed = known.get("speed", (math.hypot(*velocity), 0))[0]
+            heading = known.get("heading_deg", (math.degrees(math.atan2(*velocity)), 0))[0]
+            velocity = quantities.velocity_of(speed, heading)
+            if speed >= 0:
+                fields = {"speed": speed, "heading_deg": heading}
+            else:  # astern
+                fields = {"velocity": [*velocity, 0.0]}
+        for k, name in enumerate(("x", "y", "depth")):
+            if name in known:
+                value, stamp = known[name]
+                place[k] = value + (velocity[k] * (t - self._since(stamp)) if k < 2 else 0.0)
+        self._velocity = velocity
+        fields["position"] = list(place)
+        return self._one("platform", fields)
+
+    def _since(self, stamp):
+        return stamp - self._origin
+
+    def _phone_fields(self, places, stamp):
+        """The world's places → from the platform, where it was then."""
+        with self._lock:
+            known = dict(self._platform)
+        fix = list(self._place)
+        for k, name in enumerate(("x", "y")):
+            if name in known:
+                fix[k] = known[name][0] + self._velocity[k] * (stamp - known[name][1])
+        if "depth" in known:
+            fix[2] = known["depth"][0]
+        rows = [[one - at for one, at in zip(row, fix)] for row in places]
+        return self._one("array", {"positions": rows, "offset": [0.0, 0.0, 0.0]})
+
+    def _update_target(self, name, target, t):
+        if target.get("remove") is True:
+            if name in self._known_targets and \
+                    self._tell(shown(name), t, targets=[{"name": name, "remove": True}]):
+                self._known_targets.discard(name)
+            return
+        fields = {"name": name}
+        for key in ("speed", "heading_deg", "strength_db"):
+            if key in target:
+                fields[key] = target[key]
+        if "x" in target:
+            velocity = quantities.velocity_of(target.get("speed", 0.0), target.get("heading_deg", 0.0))
+            ahead = t - self._since(target["time"])
+            fields["position"] = [target["x"] + velocity[0] * ahead, target["y"] + velocity[1] * ahead,
+                                  target.get("depth", 0.0)]
+            if "depth" not in target:
+                if name not in self._known_targets:
+                    self.error(f"{target['where']}: {name}: found no depth, expected one")
+                    return
+        if name in self._known_targets and "heading_deg" not in fields:
+            fields.pop("speed", None)
+        if self._tell(f"{target['where']}: {name}", t, targets=[fields]):
+            self._known_targets.add(name)
+        elif name not in self._known_targets:
+            with self._lock:
+                self._targets.pop(name, None)
+
+    # Pings ----------------------------------------------------------------------------------------
+
+    def _ping(self, fields, where):
+        t = self._now()
+        if not self._update(t):
+            self.error(f"{where}: the ping is not sent, since it is not known where from")
+            return
+        try:
+            ping = self._sent(fields, t)
+        except Refused as no:
+            self.error(f"{where}: {no}")
+            return
+        answer = ping.answer
+        number, at = answer["ping"], self._origin + answer["time"]
+        self._emit("ping", {"number": number, "time": at, "scenario_time": answer["time"],
+                            "elevation_deg": answer["elevation_deg"],
+                            "transmitter": answer["transmitter"],
+                            **{k: v for k, v in fields.items() if k in
+                               ("source_level_db", "beamwidth_deg", "waveform")},
+                            **self._geometry(), "file": answer.get("file")})
+        for one in answer.get("targets", []):
+            self._emit("truth", {"ping": number, "target": one["name"], "present": one["present"],
+                                 **{k: one[k] for k in ("paths", "echo_time", "echo_level_db",
+                                                        "echo_peak_db", "reverberation_db", "noise_db",
+                                                        "echo_to_background_db") if k in one}})
+        for line in answer.get("warnings", []):
+            self._warn(line)
+        taken = {"ping": number, "latency": answer["latency"], "behind": answer.get("behind", 0.0)}
+        end = at
+        if "samples" in answer and answer["samples"].get("shape") and self.settings.delivery != "none":
+            end = self._deliver(ping, number, at)
+        if answer.get("file") and self._files_here:
+            taken["receiver"] = self._receive(answer["file"], number, at, end)
+        self._hold(end, "latency", taken)  # the last of the ping
+
+    _warned = ()
+
+    def _warn(self, line):
+        """Once each."""
+        if line not in self._warned and len(self._warned) < 100:
+            self._warned = (*self._warned, line)
+            self.error(f"warning: {line}")
+
+    def _sent(self, fields, t):
+        """→ Ping, as the settings want it delivered"""
+        when = {"time": t} if self.settings.pace == "fast" else {}
+        if self.listening or self.settings.delivery == "none":
+            return self._link.ping(deliver="none", **when, **fields)
+        if self._wants_files() and self._files_here:
+            try:
+                return self._link.ping(deliver="file", **when, **fields)
+            except Refused as no:
+                if "deliver" not in str(no):
+                    raise
+                self._files_here = False
+                self.error("the receiver rests: asdic serve writes no files, expected it with "
+                           "--output-dir")
+        return self._link.ping(deliver="samples", replica=True, **when, **fields)
+
+    def _deliver(self, ping, number, at):
+        """Samples in blocks, each due when its last sample would be received, and the files.
+        → when the record ends
+        """
+        what = ping.answer["samples"]
+        data, replica = (ping.samples, ping.replica) if ping.samples is not None else \
+            self._of_file(ping.answer)
+        if data is None:
+            return at
+        rate, start = what["sample_rate"], what["start"]
+        length = max(int(round(self.settings.block * rate)), 1)
+        count = data.shape[1]
+        for k, first in enumerate(range(0, count, length)):
+            block = np.ascontiguousarray(data[:, first:first + length])
+            begins = at + start + first / rate
+            self._hold(begins + block.shape[1] / rate, "samples", {
+                "ping": number, "block": k, "time": begins, "sample_rate": rate,
+                "carrier": what.get("carrier", 0.0), "data": block, **self._geometry()})
+        end = at + start + count / rate
+        folder = Path(self.settings.folder)
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            names = [(folder / f"ping-{number:06d}-{kind}.npy").resolve()
+                     for kind in ("data", "replica")]
+            np.save(names[0], data)
+            if replica is not None:
+                np.save(names[1], replica)
+        except OSError as error:
+            self.error(f"{folder}: {error.strerror}")
+            return end
+        self._keep([*names, *([Path(ping.answer["file"])] if "file" in ping.answer else [])])
+        self._hold(end, "files", {"ping": number, "data": str(names[0]),
+                                  "replica": str(names[1]) if replica is not None else None,
+                                  "sample_rate": rate, "carrier": what.get("carrier", 0.0),
+                                  "start": at + start})
+        return end
+
+    def _of_file(self, answer):
+        """Samples and pulse of a ping file. → [phones × samples], [samples]; None, None: not here"""
+        try:
+            import h5py
+            with h5py.File(answer["file"]) as f:
+                data, pulse = f[answer["dataset"]][answer["index"]], f["replica"][:]
+        except (ImportError, OSError, KeyError) as error:
+            if self._files_here:
+                self.error(f"the ping's file cannot be read here, so there are neither samples nor "
+                           f"detections: {error}")
+            self._files_here = False
+            return None, None
+        return tuple(np.ascontiguousarray(x).view("<c8")[..., 0] if complex_too else x
+                     for x, complex_too in ((data, data.ndim == 3), (pulse, pulse.ndim == 2)))
+
+    def _keep(self, names):
+        """The oldest files go."""
+        self._files.append(names)
+        while len(self._files) > max(self.settings.files_kept, 1):
+            for name in self._files.pop(0):
+                name.unlink(missing_ok=True)
+
+    def _receive(self, path, number, at, end):
+        """Detections and tracks, due when the record ends. → seconds it took"""
+        begun = time.monotonic()
+        try:
+            found, count = receiver.process(self.settings.program, path,
+                                            self.settings.receiver_options,
+                                            self.settings.most_detections)
+        except (receiver.ReceiverError, OSError) as error:
+            self.error(f"asdic process: {error}")
+            return None
+        for k, one in enumerate(found):
+            self._hold(end, "detection", {"ping": number, "number": k + 1, "of": count,
+                                          "ping_time": at, **one})
+        for track in self._tracker.update(at, found, self._place[:2], self._velocity):
+            away = track.state[:2] - np.asarray(self._place[:2])
+            distance = float(np.hypot(*away))
+            self._hold(end, "track", {
+                "ping": number, "track": track.number, "time": track.time,
+                "x": float(track.state[0]), "y": float(track.state[1]),
+                "vx": float(track.state[2]), "vy": float(track.state[3]),
+                "speed": float(np.hypot(*track.state[2:])),
+                "heading_deg": math.degrees(math.atan2(*track.state[2:])) % 360,
+                "range": distance, "bearing_deg": math.degrees(math.atan2(*away)) % 360,
+                "position_sigma": track.position_sigma, "hits": track.hits, "missed": track.missed,
+                "ended": bool(track.ended), "snr_db": track.snr_db})
+        return time.monotonic() - begun
+
+    # Sound paths ----------------------------------------------------------------------------------
+
+    def _answer_requests(self):
+        while not self._stop.is_set():
+            try:
+                asked, where = self._requests.get(timeout=0.2)
+            except queue.Empty:
+                continue
+            with self._lock:
+                depth = self._platform.get("depth", (None,))[0]
+            ident = {"id": asked["id"]} if "id" in asked else {}
+            try:
+                if not self.settings.scenario:
+                    raise paths.PathsError("found no scenario in the settings, expected one")
+                found = paths.answer(self.settings.program, asked, self.settings.scenario, depth)
+            except (paths.PathsError, OSError) as error:
+                self.error(f"{where}: {error}")
+                found = {"ok": False, **ident, "message": str(error)}
+            self._emit("paths", found)
+
+    # Results when they are due --------------------------------------------------------------------
+
+    def _hold(self, due, kind, what):
+        """Lets a result go at `due`; at once where there is no clock."""
+        if self.settings.pace == "fast":
+            self._emit(kind, what)
+            return
+        size = what["data"].nbytes if kind == "samples" else 0
+        with self._due:
+            if self._held_bytes + size > MOST_HELD_BYTES:
+                full = True
+            else:
+                full = False
+                self._held_bytes += size
+                heapq.heappush(self._held, (due, next(self._count), kind, what))
+                self._due.notify()
+        if full:
+            self.error(f"ping {what['ping']}: a block of samples is lost: more than "
+                       f"{MOST_HELD_BYTES} bytes wait for their time")
+
+    def _let_go(self):
+        while True:
+            with self._due:
+                if self._stop.is_set():
+                    return
+                if not self._held:
+                    self._due.wait(0.5)
+                    continue
+                late = self._clock() - self._held[0][0]
+                if late < 0:
+                    self._due.wait(min(-late / max(self.settings.factor, 1e-9), 0.5))
+                    continue
+                _, _, kind, what = heapq.heappop(self._held)
+                if kind == "samples":
+                    self._held_bytes -= what["data"].nbytes
+            self._emit(kind, what)
