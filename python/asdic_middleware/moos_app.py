@@ -18,7 +18,7 @@ INPUTS = {**{q.name: q.key for q in quantities.PLATFORM}, "ACTIVE_SONAR_COMMAND"
           "SIM_TARGET": "target", "TOWED_ARRAY_POSITIONS": "phones", "BELLHOP_REQUEST": "paths"}
 OUTPUTS = {"ACTIVE_SONAR_PING": "ping", "ACTIVE_SONAR_SAMPLES": "samples",
            "ACTIVE_SONAR_DATA_FILE": "files", "ACTIVE_SONAR_REPLICA_FILE": "files",
-           "ACTIVE_SONAR_DETECTION": "detection", "ACTIVE_SONAR_TRACK": "track",
+           "ACTIVE_SONAR_DETECTION": "detections", "ACTIVE_SONAR_TRACK": "tracks",
            "ACTIVE_SONAR_TRUTH": "truth", "ACTIVE_SONAR_LATENCY": "latency",
            "ACTIVE_SONAR_ERROR": "error", "BELLHOP_RESPONSE": "paths"}
 EXAMPLE = """ServerHost = localhost
@@ -169,11 +169,17 @@ class App:
             self._publish("ACTIVE_SONAR_ERROR", what["message"])
         elif kind == "ping":
             self._publish("ACTIVE_SONAR_PING", quantities.text_of(ping_fields(what)))
-        elif kind == "detection":
-            self._publish("ACTIVE_SONAR_DETECTION", quantities.text_of(detection_fields(what)))
+        elif kind == "detections":
+            for k, one in enumerate(what["detections"]):
+                self._publish("ACTIVE_SONAR_DETECTION", quantities.text_of(
+                    {"ping": what["ping"], "number": k + 1, "of": what["of"],
+                     "ping_time": what["ping_time"], **detection_fields(one)}))
+        elif kind == "latency":
+            self._publish("ACTIVE_SONAR_LATENCY", quantities.text_of(what))
         else:
-            self._publish({"track": "ACTIVE_SONAR_TRACK", "truth": "ACTIVE_SONAR_TRUTH",
-                           "latency": "ACTIVE_SONAR_LATENCY"}[kind], quantities.text_of(what))
+            for one in what[kind]:
+                self._publish({"tracks": "ACTIVE_SONAR_TRACK", "truth": "ACTIVE_SONAR_TRUTH"}[kind],
+                              quantities.text_of({"ping": what["ping"], **one}))
 
     def _publish(self, variable, value):
         self.db.notify(self.names[variable], value)
@@ -182,7 +188,7 @@ class App:
 def block_bytes(what):
     """A block as bytes: a line of JSON, and float32 row by row."""
     data = what["data"]
-    head = {k: v for k, v in what.items() if k != "data"}
+    head = {k: v for k, v in what.items() if k not in ("data", "phones")}
     head |= {"channels": data.shape[0], "samples": data.shape[1], "complex": data.ndim == 3 or
              np.iscomplexobj(data), "unit": "Pa", "type": "float32", "byte_order": "little"}
     kind = "<c8" if np.iscomplexobj(data) else "<f4"

@@ -26,6 +26,8 @@ MOST_REQUESTS_WAITING = 16
 MOST_TARGETS = 64
 MOST_HELD_BYTES = 512 << 20  # of samples that are not due
 ERRORS_PER_SECOND = 20
+TRUTH = ("present", "paths", "echo_time", "echo_level_db", "echo_peak_db", "reverberation_db",
+         "noise_db", "echo_to_background_db")  # of a target, in a ping's answer
 MOST_SKEW = 10.0             # of a stamp against the clock [s]; beyond it counts as now
 
 
@@ -59,7 +61,8 @@ class Sonar:
     """
     clock  the middleware's time [s], a function
     emit   called with (kind, dict) for each result, from threads of this class. Kinds: "ping",
-           "samples", "files", "detection", "track", "truth", "latency", "paths", "error", "ready"
+           "samples", "files", "detections", "tracks", "truth" (each of a ping, with a list of that name),
+           "latency" (the last of a ping), "paths", "error", "ready"
     """
 
     def __init__(self, settings, clock, emit):
@@ -422,11 +425,9 @@ class Sonar:
                             **{k: v for k, v in fields.items() if k in
                                ("source_level_db", "beamwidth_deg", "waveform")},
                             **self._geometry(), "file": answer.get("file")})
-        for one in answer.get("targets", []):
-            self._emit("truth", {"ping": number, "target": one["name"], "present": one["present"],
-                                 **{k: one[k] for k in ("paths", "echo_time", "echo_level_db",
-                                                        "echo_peak_db", "reverberation_db", "noise_db",
-                                                        "echo_to_background_db") if k in one}})
+        self._emit("truth", {"ping": number, "time": at, "truth": [
+            {"target": one["name"], **{k: one[k] for k in TRUTH if k in one}}
+            for one in answer.get("targets", [])]})
         for line in answer.get("warnings", []):
             self._warn(line)
         taken = {"ping": number, "latency": answer["latency"], "behind": answer.get("behind", 0.0)}
@@ -466,8 +467,10 @@ class Sonar:
         → when the record ends
         """
         what = ping.answer["samples"]
-        data, replica = (ping.samples, ping.replica) if ping.samples is not None else \
-            self._of_file(ping.answer)
+        if ping.samples is not None:
+            data, replica, phones = ping.samples, ping.replica, None
+        else:
+            data, replica, phones = self._of_file(ping.answer)
         if data is None:
             return at
         rate, start = what["sample_rate"], what["start"]
@@ -478,7 +481,8 @@ class Sonar:
             begins = at + start + first / rate
             self._hold(begins + block.shape[1] / rate, "samples", {
                 "ping": number, "block": k, "time": begins, "sample_rate": rate,
-                "carrier": what.get("carrier", 0.0), "data": block, **self._geometry()})
+                "carrier": what.get("carrier", 0.0), "data": block, "phones": phones,
+                **self._geometry()})
         end = at + start + count / rate
         folder = Path(self.settings.folder)
         try:
@@ -499,19 +503,23 @@ class Sonar:
         return end
 
     def _of_file(self, answer):
-        """Samples and pulse of a ping file. → [phones × samples], [samples]; None, None: not here"""
+        """Samples, pulse and places of a ping file. → [phones × samples], [samples], [phones × 3]; or
+        three times None: it is not here
+        """
         try:
             import h5py
             with h5py.File(answer["file"]) as f:
-                data, pulse = f[answer["dataset"]][answer["index"]], f["replica"][:]
+                k = answer["index"]
+                data, pulse, phones = f[answer["dataset"]][k], f["replica"][:], f["phone_position"][k]
         except (ImportError, OSError, KeyError) as error:
             if self._files_here:
                 self.error(f"the ping's file cannot be read here, so there are neither samples nor "
                            f"detections: {error}")
             self._files_here = False
-            return None, None
-        return tuple(np.ascontiguousarray(x).view("<c8")[..., 0] if complex_too else x
-                     for x, complex_too in ((data, data.ndim == 3), (pulse, pulse.ndim == 2)))
+            return None, None, None
+        data, pulse = (np.ascontiguousarray(x).view("<c8")[..., 0] if complex_too else x
+                       for x, complex_too in ((data, data.ndim == 3), (pulse, pulse.ndim == 2)))
+        return data, pulse, phones
 
     def _keep(self, names):
         """The oldest files go."""
@@ -530,22 +538,22 @@ class Sonar:
         except (receiver.ReceiverError, OSError) as error:
             self.error(f"asdic process: {error}")
             return None
-        for k, one in enumerate(found):
-            self._hold(end, "detection", {"ping": number, "number": k + 1, "of": count,
-                                          "ping_time": at, **one})
-        for track in self._tracker.update(at, found, self._place[:2], self._velocity):
-            away = track.state[:2] - np.asarray(self._place[:2])
-            distance = float(np.hypot(*away))
-            self._hold(end, "track", {
-                "ping": number, "track": track.number, "time": track.time,
-                "x": float(track.state[0]), "y": float(track.state[1]),
-                "vx": float(track.state[2]), "vy": float(track.state[3]),
-                "speed": float(np.hypot(*track.state[2:])),
-                "heading_deg": math.degrees(math.atan2(*track.state[2:])) % 360,
-                "range": distance, "bearing_deg": math.degrees(math.atan2(*away)) % 360,
-                "position_sigma": track.position_sigma, "hits": track.hits, "missed": track.missed,
-                "ended": bool(track.ended), "snr_db": track.snr_db})
+        self._hold(end, "detections", {"ping": number, "of": count, "ping_time": at, "time": end,
+                                       "detections": found})
+        tracks = self._tracker.update(at, found, self._place[:2], self._velocity)
+        self._hold(end, "tracks", {"ping": number, "time": end,
+                                   "tracks": [self._track_fields(track) for track in tracks]})
         return time.monotonic() - begun
+
+    def _track_fields(self, track):
+        away = track.state[:2] - np.asarray(self._place[:2])
+        x, y, vx, vy = map(float, track.state)
+        return {"track": track.number, "time": track.time, "x": x, "y": y, "vx": vx, "vy": vy,
+                "speed": math.hypot(vx, vy), "heading_deg": math.degrees(math.atan2(vx, vy)) % 360,
+                "range": float(np.hypot(*away)),
+                "bearing_deg": math.degrees(math.atan2(*away)) % 360,
+                "position_sigma": track.position_sigma, "hits": track.hits, "missed": track.missed,
+                "ended": bool(track.ended), "snr_db": track.snr_db}
 
     # Sound paths ----------------------------------------------------------------------------------
 

@@ -37,7 +37,7 @@ for name in "${names[@]}"; do
   [ "$(control "$name" Architecture)" = "$(dpkg --print-architecture)" ] || fail "architecture of $name"
   control "$name" Version | grep -q '^0\|^[1-9]' || fail "version of $name"
 done
-has asdic bin/asdic-moos share/man/man1/asdic-moos.1.gz share/asdic/python/asdic_middleware/moos_app.py
+has asdic bin/asdic-moos share/man/man1/asdic-moos.1.gz share/asdic/ros/asdic_msgs/msg/AudioBlock.msg share/asdic/python/asdic_middleware/moos_app.py
 has asdic bin/asdic share/asdic/python/asdic_plot.py share/asdic/scenarios/deep_ocean.toml share/doc/asdic/docs/guide/commands.md \
   share/bash-completion/completions/asdic share/zsh/vendor-completions/_asdic share/fish/vendor_completions.d/asdic.fish
 if grep -E 'asdic-mpi|libasdic|_core|/include/|\.pyc' "$folder/asdic.files"; then fail "asdic holds what is of others"; fi
