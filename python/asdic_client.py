@@ -216,6 +216,12 @@ class Client:
         self._writer.flush()
 
     def close(self):
+        for end in self._close:
+            if isinstance(end, socket.socket):
+                try:
+                    end.shutdown(socket.SHUT_RDWR)  # a thread that waits for an answer waits no longer
+                except OSError:
+                    pass
         for end in (self._writer, self._reader, *self._close):
             try:
                 end.close()

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""An active sonar in a MOOS community: asdic_moos.py MISSION.moos [NAME]. The command asdic-moos."""
+"""An active sonar in a MOOS community: asdic_moos.py MISSION.moos [NAME]. The command
+asdic-moos.
+"""
 import sys
 from pathlib import Path
 

@@ -7,7 +7,9 @@ TIME_LIMIT = 600  # of a command [s]
 
 
 class Link:
-    """call() may come from any thread. on_block(answer, samples) is called in the reader's thread."""
+    """call() may come from any thread. on_block(answer, samples) is called in the reader's
+    thread.
+    """
 
     def __init__(self, client, on_block):
         self.client, self._on_block = client, on_block

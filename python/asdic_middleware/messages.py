@@ -1,5 +1,6 @@
-"""asdic_msgs from and to the quantities of this package. Messages are filled by the names of their fields, so
-that ROS 1 and ROS 2 share it; a module `msgs` holds the classes (asdic_msgs.msg of either).
+"""asdic_msgs from and to the quantities of this package. Messages are filled by the names of
+their fields, so that ROS 1 and ROS 2 share it; a module `msgs` holds the classes (asdic_msgs.msg of
+either).
 """
 import json
 import math
@@ -39,8 +40,8 @@ def audio(msgs, what, floats=list):
     data = what["data"]
     is_complex = bool(np.iscomplexobj(data))
     flat = np.ascontiguousarray(data, "<c8" if is_complex else "<f4").view("<f4").ravel()
-    message = fill(msgs.AudioBlock(), {**{k: v for k, v in what.items() if k not in ("data", "time")},
-                                       "channels": data.shape[0], "samples": data.shape[1],
+    told = {k: v for k, v in what.items() if k not in ("data", "time")}
+    message = fill(msgs.AudioBlock(), {**told, "channels": data.shape[0], "samples": data.shape[1],
                                        "is_complex": is_complex})
     message.data = floats(flat)
     if what.get("phones") is not None:
@@ -79,7 +80,8 @@ def tracks(msgs, what):
 
 def truth(msgs, what):
     message = fill(msgs.Truth(), {"ping": what["ping"]})
-    message.truth.extend(fill(msgs.TargetTruth(), {"echo_time": None, **one}) for one in what["truth"])
+    message.truth.extend(fill(msgs.TargetTruth(), {"echo_time": None, **one})
+                         for one in what["truth"])
     return message
 
 
@@ -87,7 +89,7 @@ def done(msgs, what):
     return fill(msgs.PingDone(), {"receiver": None, **what})
 
 
-# In -------------------------------------------------------------------------------------------------
+# In ---------------------------------------------------------------------------------------------
 
 PLATFORM = tuple(q.key for q in quantities.PLATFORM)
 
@@ -95,7 +97,8 @@ PLATFORM = tuple(q.key for q in quantities.PLATFORM)
 def target_of(message, where):
     """→ fields for Sonar.set_target(). NaN: not said. \\throws Wrong"""
     if message.remove:
-        return quantities.keyed([("name", message.name), ("remove", "true")], quantities.TARGET, where)
+        return quantities.keyed([("name", message.name), ("remove", "true")], quantities.TARGET,
+                                where)
     values = [("name", message.name)]
     for name in ("x", "y", "depth", "speed", "heading_deg", "strength_db"):
         value = getattr(message, name)
@@ -127,11 +130,13 @@ def ping_of(message, where):
 
 
 def platform_of_odometry(message):
-    """nav_msgs/Odometry in a frame of x east, y north, z up (REP 103). → {x, y, depth, heading_deg, speed}
+    """nav_msgs/Odometry in a frame of x east, y north, z up (REP 103). → {x, y, depth,
+    heading_deg, speed}
 
     Its twist is in the vehicle's frame, x forward.
     """
     place, turn = message.pose.pose.position, message.pose.pose.orientation
     yaw = math.atan2(2 * (turn.w * turn.z + turn.x * turn.y), 1 - 2 * (turn.y**2 + turn.z**2))
     return {"x": place.x, "y": place.y, "depth": -place.z,
-            "heading_deg": (90.0 - math.degrees(yaw)) % 360.0, "speed": message.twist.twist.linear.x}
+            "heading_deg": (90.0 - math.degrees(yaw)) % 360.0,
+            "speed": message.twist.twist.linear.x}

@@ -38,7 +38,9 @@ class Block:
 
 
 def read(path, app):
-    """→ the mission's Block, the app's Block (None: there is none). \\throws MissionError, OSError"""
+    """→ the mission's Block, the app's Block (None: there is none). \\throws MissionError,
+    OSError
+    """
     path = Path(path)
     if path.stat().st_size > LARGEST:
         raise MissionError(f"{path}: found {path.stat().st_size} bytes, expected at most {LARGEST}")
@@ -50,7 +52,8 @@ def read(path, app):
             continue
         if line == "{":
             if block is None or opened:
-                raise MissionError(f"{path}:{number}: found {{, expected ProcessConfig = NAME before")
+                raise MissionError(f"{path}:{number}: found {{, expected ProcessConfig = NAME "
+                                   "before")
             opened = True
         elif line == "}":
             if block is None or not opened:
@@ -66,7 +69,8 @@ def read(path, app):
                 block, opened = Block(path), False
                 block.app = value
                 if value == app and value in blocks:
-                    raise MissionError(f"{path}:{number}: found a second block of {app}, expected one")
+                    raise MissionError(f"{path}:{number}: found a second block of {app}, "
+                                       "expected one")
                 blocks[value] = block
             elif block is None:
                 if name.lower() not in mission.values:

@@ -2,6 +2,7 @@
 import argparse
 import json
 import signal
+import socket
 import sys
 import threading
 from pathlib import Path
@@ -41,7 +42,9 @@ class App:
     """The mission's block → database and sonar, and what goes from one to the other."""
 
     def __init__(self, path, name="asdic-moos", changes=()):
-        """changes: (name, value) in place of the mission's. \\throws Wrong, MissionError, OSError"""
+        """changes: (name, value) in place of the mission's. \\throws Wrong, MissionError,
+        OSError
+        """
         values, block = mission.read(path, name)
         if block is None:
             raise mission.MissionError(f"{path}: found no block, expected ProcessConfig = {name}")
@@ -53,7 +56,7 @@ class App:
         for key, value in block.values.items():
             if key.upper() in self.names:
                 self.names[key.upper()] = self._variable(value, block.place(key))
-            elif key not in ("apptick", "commstick", "maxapptick"):  # of every app; there is nothing to tick
+            elif key not in ("apptick", "commstick", "maxapptick"):  # of every app; nothing ticks
                 own[block.names[key]] = value
         host = values.get("ServerHost", "localhost")
         port = self._of(values, "ServerPort", "9000", (1, 65535))
@@ -73,6 +76,9 @@ class App:
         self.db = MoosDB(host, int(port), name, self.clock, {n: 0.0 for n in self._in}, self._mail,
                          self._lost, self._up)
         self.sonar = Sonar(self.settings, self.clock, self._result)
+        self._clock_known = threading.Event()
+        if host in ("localhost", "127.0.0.1", "::1", socket.gethostname()):
+            self._clock_known.set()
 
     @staticmethod
     def _variable(value, where):
@@ -99,16 +105,21 @@ class App:
 
     def told(self):
         """What it would do, a line each."""
-        lines = [f"{self.name} at {self.db.host}:{self.db.port}, time goes {self.clock.warp:g} times "
-                 f"as fast, {self.settings.scenario or self.settings.socket or self.settings.tcp}"]
+        server = self.settings.socket or self.settings.tcp or self.settings.scenario
+        lines = [f"{self.name} at {self.db.host}:{self.db.port}, time goes {self.clock.warp:g} "
+                 f"times as fast, {server}"]
         for what, names in (("takes", INPUTS), ("publishes", OUTPUTS)):
             lines += [f"{what:9} {self.names[n]}" + (f" ({n})" if self.names[n] != n else "")
                       for n in names]
         return "\n".join(lines)
 
     def run(self, stop):
+        """The sonar begins when the clock is known: that of a database elsewhere may be another."""
         self.db.start()
-        self.sonar.start()
+        while not stop.wait(0.05):
+            if self._clock_known.is_set():
+                self.sonar.start()
+                break
         stop.wait()
         self.sonar.close()
         self.db.close()
@@ -148,6 +159,7 @@ class App:
         say(reason)
 
     def _up(self):
+        self._clock_known.set()
         say(f"in the community {self.db.community} at {self.db.host}:{self.db.port}")
 
     # Out ------------------------------------------------------------------------------------------
@@ -224,8 +236,8 @@ def say(line):
 
 def main(words=None):
     parser = argparse.ArgumentParser(
-        prog="asdic-moos", description="An active sonar in a MOOS community: takes NAV_*, targets and "
-        "commands, publishes samples, detections, tracks and the truth. docs/guide/moos.md")
+        prog="asdic-moos", description="An active sonar in a MOOS community: takes NAV_*, targets "
+        "and commands, publishes samples, detections, tracks and the truth. docs/guide/moos.md")
     parser.add_argument("mission", nargs="?", help="mission file (.moos)")
     parser.add_argument("name", nargs="?", default="asdic-moos",
                         help="of the block and of the app; default: asdic-moos")

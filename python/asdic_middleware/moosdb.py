@@ -1,4 +1,7 @@
-"""A client of MOOSDB: connects, registers, notifies, keeps alive, and comes back when it was lost."""
+"""A client of MOOSDB: connects, registers, notifies, keeps alive, and comes back when it was
+lost.
+"""
+import math
 import select
 import socket
 import threading
@@ -14,14 +17,19 @@ MOST_WAITING_BYTES = 256 << 20
 
 
 class Clock:
-    """MOOSTime: seconds since 1970, warp times as fast; in step with the database's."""
+    """MOOSTime: seconds since 1970, warp times as fast, and `skew` ahead of this machine's, which
+    is how much the database's clock is, on another machine.
+    """
 
     def __init__(self, warp=1.0):
         self.warp = warp
         self.skew = 0.0
 
+    def own(self):
+        return self.warp * time.time()
+
     def __call__(self):
-        return self.warp * time.time() + self.skew
+        return self.own() + self.skew
 
 
 class Refused(Exception):
@@ -35,8 +43,8 @@ class MoosDB:
     lost       called with a reason, a line, when a connection breaks or cannot be made; once a loss
     up         called after each connection, when the variables are registered
 
-    notify() never waits: while there is no database, and when it takes too slowly, what is oldest is
-    dropped, and counted in `dropped`.
+    notify() never waits: while there is no database, and when it takes too slowly, what is oldest
+    is dropped, and counted in `dropped`.
     """
 
     def __init__(self, host, port, name, clock, variables, received, lost, up=lambda: None):
@@ -110,8 +118,7 @@ class MoosDB:
         end = socket.create_connection((self.host, self.port), timeout=5)
         try:
             end.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-            sent = time.time()
-            hello = packets.hello(self.name, self.clock.warp * sent)
+            hello = packets.hello(self.name, self.clock.own())
             end.sendall(packets.GREETING + packets.packed([hello]))
             welcome = packets.unpacked(self._packet(end))
             if not welcome or welcome[0].type not in (Type.WELCOME, Type.REFUSED):
@@ -119,13 +126,16 @@ class MoosDB:
             if welcome[0].type == Type.REFUSED:
                 raise Refused("refused: " + welcome[0].str_value[:200])
             self.community = welcome[0].community
+            host = welcome[0].source_aux.partition("hostname=")[2]
+            self._elsewhere = host not in ("", socket.gethostname())
+            self._skews = []
             registrations = []
             for variable, interval in self.variables.items():
                 one = packets.register(variable, interval)
                 one.source = self.name
                 one.time = self.clock()
                 registrations.append(one)
-            end.sendall(packets.packed([packets.timing(self.clock()), *registrations]))
+            end.sendall(packets.packed([packets.timing(self.clock.own()), *registrations]))
         except BaseException:
             end.close()
             raise
@@ -150,7 +160,8 @@ class MoosDB:
         self.connected = True
         self.connections += 1
         end.setblocking(False)
-        self._up()
+        if not self._elsewhere:
+            self._up()
         coming, going = bytearray(), b""
         heard = said = time.monotonic()
         while not self._stop.is_set():
@@ -158,7 +169,7 @@ class MoosDB:
                 going = self._next_packet()
             now = time.monotonic()
             if not going and now - said >= KEEP_ALIVE:
-                going = packets.packed([packets.timing(self.clock())])
+                going = packets.packed([packets.timing(self.clock.own())])
             if now - heard > SILENCE:
                 raise ConnectionError(f"nothing came for {SILENCE:g} s")
             readable, writable, _ = select.select([end, self._wake_end], [end] if going else [], [],
@@ -190,8 +201,25 @@ class MoosDB:
             packet = bytes(coming[:length])
             del coming[:length]
             for message in packets.unpacked(packet):
-                if message.type == Type.NOTIFY and message.key in self.variables:
+                if message.type == Type.TIMING:
+                    self._compare(message)
+                elif message.type == Type.NOTIFY and message.key in self.variables:
                     self._received(message)
+
+    def _compare(self, answer):
+        """The database's clock against this one's: it told its time half way between question and
+        answer. Of the latest the one that took the shortest is the best.
+        """
+        if not self._elsewhere:
+            return
+        now, asked = self.clock.own(), answer.time
+        if not 0 <= now - asked <= 10 * self.clock.warp or not math.isfinite(answer.value):
+            return
+        self._skews = [*self._skews[-15:], (now - asked, answer.value - (asked + now) / 2)]
+        first = len(self._skews) == 1
+        self.clock.skew = min(self._skews)[1]
+        if first:
+            self._up()
 
 
 __all__ = ["Clock", "Message", "MoosDB", "Refused"]

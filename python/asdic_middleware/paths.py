@@ -1,4 +1,6 @@
-"""Sound paths on request, in iBellhop's place: `asdic arrivals` and `asdic rays` as child processes."""
+"""Sound paths on request, in iBellhop's place: `asdic arrivals` and `asdic rays` as child
+processes.
+"""
 import json
 import subprocess
 
@@ -48,7 +50,8 @@ def answer(program, asked, scenario, own_depth=None):
                          f"{LARGEST_ANSWER}: ask for fewer rays")
     found = json.loads(done.stdout)
     found.pop("scenario", None)  # a path of this machine
-    told = [line.partition("warning: ")[2] for line in done.stderr.splitlines() if "warning: " in line]
+    told = [line.partition("warning: ")[2] for line in done.stderr.splitlines()
+            if "warning: " in line]
     if told:
         found["warnings"] = found.get("warnings", []) + told
     return {"ok": True, **({"id": asked["id"]} if "id" in asked else {}), **found}

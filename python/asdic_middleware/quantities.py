@@ -80,7 +80,7 @@ def name_of(value, where):
     return value
 
 
-# The vehicle and the targets: the map's x is east, y north [m], depths are positive down, headings true.
+# The vehicle and the targets: x is east, y north [m], depths are positive down, headings true.
 FAR = 1e7  # bound of the scenario's coordinates [m]
 PLATFORM = (Quantity("NAV_X", "x", "m", -FAR, FAR), Quantity("NAV_Y", "y", "m", -FAR, FAR),
             Quantity("NAV_DEPTH", "depth", "m", -100.0, 12000.0),
@@ -163,12 +163,13 @@ def text_of(fields):
 
 
 def target_of(fields, where):
-    """A target as `update` has it, and where it is. → dict of name, x, y, depth, speed, heading_deg,
-    strength_db, remove. \\throws Wrong
+    """A target as `update` has it, and where it is. → dict of name, x, y, depth, speed,
+    heading_deg, strength_db, remove. \\throws Wrong
     """
     if "name" not in fields:
         raise Wrong(where, "no name", "name=…")
-    for one, other in (("x", "y"), ("x", "depth"), ("y", "x"), ("speed", "heading_deg")):
+    for one, other in (("x", "y"), ("x", "depth"), ("y", "x"), ("depth", "x"),
+                       ("speed", "heading_deg")):
         if one in fields and other not in fields:
             raise Wrong(f"{where}: {other}", "nothing", f"it beside {one}")
     return fields
@@ -178,8 +179,9 @@ WAVEFORM = ("kind", "frequency", "start_frequency", "end_frequency", "duration",
 
 
 def ping_of(pairs, where):
-    """A ping command: type, frequencies, duration, window, level, elevation, beamwidth, transmitter;
-    `waveform.KEY` goes to the waveform as it is. → keyword arguments of Client.ping. \\throws Wrong
+    """A ping command: type, frequencies, duration, window, level, elevation, beamwidth,
+    transmitter; `waveform.KEY` goes to the waveform as it is. → keyword arguments of Client.ping.
+    \\throws Wrong
     """
     own = [(n, v) for n, v in pairs if not str(n).lower().startswith("waveform.")]
     fields = keyed(own, COMMAND, where)
@@ -214,7 +216,8 @@ def waveform_of(wave, where):
             raise Wrong(f"{where}: {'min' if low is None else 'max'}_frequency", "nothing",
                         f"both ends of a sweep, for type={kind}")
         if not low < high:
-            raise Wrong(f"{where}: min_frequency", f"{low:g} Hz", f"less than max_frequency, {high:g} Hz")
+            raise Wrong(f"{where}: min_frequency", f"{low:g} Hz",
+                        f"less than max_frequency, {high:g} Hz")
         centre = wave.pop("frequency", None)
         if centre is not None and not low <= centre <= high:
             raise Wrong(f"{where}: centre_frequency", f"{centre:g} Hz",
@@ -224,7 +227,8 @@ def waveform_of(wave, where):
     elif kind == "cw":
         if "frequency" not in wave:
             if low is None or low != high:
-                raise Wrong(f"{where}: centre_frequency", "nothing", "the tone's frequency, for type=cw")
+                raise Wrong(f"{where}: centre_frequency", "nothing",
+                            "the tone's frequency, for type=cw")
             wave["frequency"] = low
         for name in ("start_frequency", "end_frequency", "sweep"):
             wave.pop(name, None)

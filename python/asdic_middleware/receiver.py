@@ -16,16 +16,17 @@ def process(program, path, options=(), most=50):
     """Detections of a ping, the loudest first.
 
     most  of them that are told
-    → list of dict: ping, array, time [s after the ping], doppler_factor, snr_db, excess_db, level_db,
+    → list of dict: ping, array, time [s after the ping], doppler_factor, snr_db, excess_db,
+    level_db,
       look_bearing_deg, look_elevation_deg (None: the array cannot tell), and `places`: where it may
-      be, up to two (a line hears right and left alike): dicts of x, y, depth, range [m], bearing_deg,
-      range_rate [m/s, opening]; how many there were. \\throws ReceiverError
+      be, up to two (a line hears right and left alike): dicts of x, y, depth, range [m],
+      bearing_deg, range_rate [m/s, opening]; how many there were. \\throws ReceiverError
     """
     with tempfile.TemporaryDirectory(prefix="asdic_receiver_") as folder:
         try:
-            done = subprocess.run([program, "process", str(path), "--no-file", "--no-maps", "--quiet",
-                                   "--csv", folder, *options], capture_output=True, text=True,
-                                  timeout=TIME_LIMIT, stdin=subprocess.DEVNULL)
+            done = subprocess.run([program, "process", str(path), "--no-file", "--no-maps",
+                                   "--quiet", "--csv", folder, *options], capture_output=True,
+                                  text=True, timeout=TIME_LIMIT, stdin=subprocess.DEVNULL)
         except subprocess.TimeoutExpired:
             raise ReceiverError(f"not done after {TIME_LIMIT} s") from None
         if done.returncode != 0:

@@ -1,4 +1,6 @@
-"""The node of ROS 1 and ROS 2: topics → sonar → topics. ros1.py and ros2.py say how each of them does it."""
+"""The node of ROS 1 and ROS 2: topics → sonar → topics. ros1.py and ros2.py say how each of them
+does it.
+"""
 import json
 
 from . import messages, quantities
@@ -7,8 +9,8 @@ from .settings import NAMES, TRACKER, settings_of
 from .sonar import Sonar
 
 # parameters: the names of settings in small letters, with _ between words or without
-PARAMETERS = {**{n.lower(): v[1] for n, v in NAMES.items()}, **{n.lower(): v[1] for n, v in TRACKER.items()},
-              "timefactor": (1e-3, 1e4)}
+PARAMETERS = {name.lower(): kind for name, (_, kind) in {**NAMES, **TRACKER}.items()}
+PARAMETERS["timefactor"] = (1e-3, 1e4)
 #: topic (below the node's name), class, method of Bridge
 INPUTS = (("platform", "Platform", "platform"), ("odometry", "Odometry", "odometry"),
           ("target", "Target", "target"), ("array", "ArrayShape", "array"),
@@ -16,7 +18,8 @@ INPUTS = (("platform", "Platform", "platform"), ("odometry", "Odometry", "odomet
 #: kind of result: topic, class
 OUTPUTS = {"ping": ("ping", "Ping"), "samples": ("samples", "AudioBlock"),
            "detections": ("detections", "Detections"), "tracks": ("tracks", "Tracks"),
-           "truth": ("truth", "Truth"), "latency": ("latency", "PingDone"), "paths": ("paths", "String"),
+           "truth": ("truth", "Truth"), "latency": ("latency", "PingDone"),
+           "paths": ("paths", "String"),
            "error": ("errors", "String")}
 
 
@@ -26,14 +29,16 @@ def plain_name(name):
 
 class Bridge:
     """
-    ros  of the version of ROS: now() [s], stamp_of(message) [s or None], set_stamp(message, seconds),
-         publish(topic, message), log(text), msgs (classes by name), floats (makes an array a field)
+    ros  of the version of ROS: now() [s], stamp_of(message) [s or None], set_stamp(message,
+         seconds), publish(topic, message), log(text), msgs (classes by name), floats (makes an
+         array a field)
     """
 
     def __init__(self, ros, parameters):
         """parameters: {name: value}. \\throws Wrong"""
         values = {plain_name(n): v for n, v in parameters.items()}
-        factor = quantities.number(values.pop("timefactor", 1.0), "time_factor", *PARAMETERS["timefactor"])
+        factor = quantities.number(values.pop("timefactor", 1.0), "time_factor",
+                                   *PARAMETERS["timefactor"])
         settings, rest = settings_of(values, factor, lambda name: f"parameter {name}")
         if rest:
             raise Wrong(f"parameter {rest[0]}", "a name that there is none",
@@ -41,7 +46,7 @@ class Bridge:
         self._ros = ros
         self.sonar = Sonar(settings, ros.now, self._result)
 
-    # In: called by ROS with each message -------------------------------------------------------------
+    # In: called by ROS with each message ---------------------------------------------------------
 
     def take(self, method, message):
         try:
@@ -54,7 +59,8 @@ class Bridge:
                        self._ros.stamp_of(message))
 
     def _take_odometry(self, message):
-        self._platform(messages.platform_of_odometry(message), "odometry", self._ros.stamp_of(message))
+        self._platform(messages.platform_of_odometry(message), "odometry",
+                       self._ros.stamp_of(message))
 
     def _platform(self, values, where, stamp):
         for quantity in quantities.PLATFORM:  # all or none of a fix
@@ -63,7 +69,8 @@ class Bridge:
             self.sonar.set_platform(name, value, f"{where}: {name}", stamp)
 
     def _take_target(self, message):
-        self.sonar.set_target(messages.target_of(message, "target"), "target", self._ros.stamp_of(message))
+        self.sonar.set_target(messages.target_of(message, "target"), "target",
+                              self._ros.stamp_of(message))
 
     def _take_array(self, message):
         self.sonar.set_phones(messages.phones_of(message, "array"), self._ros.stamp_of(message))
@@ -72,9 +79,10 @@ class Bridge:
         self.sonar.ping(messages.ping_of(message, "command"), "command")
 
     def _take_paths(self, message):
-        self.sonar.request_paths(quantities.paths_of(message.data, "paths_request"), "paths_request")
+        self.sonar.request_paths(quantities.paths_of(message.data, "paths_request"),
+                                 "paths_request")
 
-    # Out ---------------------------------------------------------------------------------------------
+    # Out -----------------------------------------------------------------------------------------
 
     def _result(self, kind, what):
         msgs = self._ros.msgs
@@ -92,6 +100,7 @@ class Bridge:
         else:
             message = {"ping": messages.ping, "detections": messages.detections,
                        "tracks": messages.tracks, "truth": messages.truth, "latency": messages.done,
-                       "samples": lambda m, w: messages.audio(m, w, self._ros.floats)}[kind](msgs, what)
+                       "samples": lambda m, w: messages.audio(m, w, self._ros.floats)
+                       }[kind](msgs, what)
             self._ros.set_stamp(message, what.get("time") or self._ros.now())
         self._ros.publish(OUTPUTS[kind][0], message)

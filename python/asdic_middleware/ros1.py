@@ -15,14 +15,15 @@ class Ros1:
     floats = staticmethod(lambda array: array.tolist())
 
     def __init__(self):
-        self.msgs = types.SimpleNamespace(**{n: getattr(msg, n) for n in dir(msg) if n[0].isupper()},
-                                          String=std_msgs.msg.String)
+        self.msgs = types.SimpleNamespace(String=std_msgs.msg.String, **{
+            name: getattr(msg, name) for name in dir(msg) if name[0].isupper()})
         try:
             from nav_msgs.msg import Odometry
             self.msgs.Odometry = Odometry
         except ImportError:
             self.log("found no nav_msgs, so there is no topic odometry")
-        self._topics = {topic: rospy.Publisher("~" + topic, getattr(self.msgs, kind), queue_size=QUEUE)
+        self._topics = {topic: rospy.Publisher("~" + topic, getattr(self.msgs, kind),
+                                               queue_size=QUEUE)
                         for topic, kind in OUTPUTS.values()}
 
     now = staticmethod(rospy.get_time)

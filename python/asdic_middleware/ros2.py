@@ -1,5 +1,5 @@
-"""The node of ROS 2: rclpy, asdic_msgs, and Odometry where nav_msgs is there. No ROS 2 was at hand to run it: the
-tests run it on a stand-in of rclpy.
+"""The node of ROS 2: rclpy, asdic_msgs, and Odometry where nav_msgs is there. No ROS 2 was at
+hand to run it: the tests run it on a stand-in of rclpy.
 """
 import array
 import types
@@ -21,8 +21,8 @@ class Ros2(Node):
     def __init__(self):
         super().__init__("asdic", allow_undeclared_parameters=True,
                          automatically_declare_parameters_from_overrides=True)
-        self.msgs = types.SimpleNamespace(**{n: getattr(msg, n) for n in dir(msg) if n[0].isupper()},
-                                          String=std_msgs.msg.String)
+        self.msgs = types.SimpleNamespace(String=std_msgs.msg.String, **{
+            name: getattr(msg, name) for name in dir(msg) if name[0].isupper()})
         try:
             from nav_msgs.msg import Odometry
             self.msgs.Odometry = Odometry

@@ -1,4 +1,6 @@
-"""Settings of asdic on a vehicle by their names, whatever carries them: a `.moos` block, ROS's parameters."""
+"""Settings of asdic on a vehicle by their names, whatever carries them: a `.moos` block, ROS's
+parameters.
+"""
 import math
 import shlex
 from dataclasses import fields
@@ -19,8 +21,9 @@ NAMES = {
     "Folder": ("folder", str), "FilesKept": ("files_kept", (1, 1000000)),
 }
 TRACKER = {
-    "TrackHits": ("hits", (1, 20)), "TrackOf": ("of", (1, 20)), "TrackMisses": ("misses", (1, 1000)),
-    "TrackAcceleration": ("acceleration", (1e-6, 100.0)), "TrackMaxSpeed": ("most_speed", (0.1, 100.0)),
+    "TrackHits": ("hits", (1, 20)), "TrackOf": ("of", (1, 20)),
+    "TrackMisses": ("misses", (1, 1000)), "TrackAcceleration": ("acceleration", (1e-6, 100.0)),
+    "TrackMaxSpeed": ("most_speed", (0.1, 100.0)),
     "TrackRangeSigma": ("range_sigma", (0.1, 1e5)),
     "TrackBearingSigma": ("bearing_sigma_deg", (0.01, 90.0)),
     "TrackRateSigma": ("rate_sigma", (0.001, 1000.0)),
@@ -60,7 +63,7 @@ def settings_of(values, factor, place=lambda name: name):
     → Settings, names that are none of these. \\throws Wrong
     """
     made, tracker, rest = Settings(factor=factor), TrackerSettings(), []
-    whole = {f.name for of in (Settings, TrackerSettings) for f in fields(of) if f.type in (int, "int")}
+    whole = {f.name for of in (Settings, TrackerSettings) for f in fields(of) if f.type is int}
     known = {n.lower(): (made, *v) for n, v in NAMES.items()}
     known |= {n.lower(): (tracker, *v) for n, v in TRACKER.items()}
     for name, value in values.items():
@@ -76,7 +79,8 @@ def settings_of(values, factor, place=lambda name: name):
         setattr(of, key, it)
     made.tracker = tracker
     if not (made.scenario or made.socket or made.tcp):
-        raise Wrong("Scenario", "nothing", "a scenario, or the Socket or TCP of a running asdic serve")
+        raise Wrong("Scenario", "nothing",
+                    "a scenario, or the Socket or TCP of a running asdic serve")
     if tracker.hits > tracker.of:
         raise Wrong("TrackHits", str(tracker.hits), f"at most TrackOf, {tracker.of}")
     return made, rest

@@ -1,8 +1,9 @@
 """The sonar of a vehicle: what is known of vehicle, targets and array, the pings made of it by
-`asdic serve`, and what becomes of them. MOOS and ROS tell it what arrives and publish what it emits.
+`asdic serve`, and what becomes of them. MOOS and ROS tell it what arrives and publish what it
+emits.
 
-Threads: inputs may come from any. One thread speaks with the server and runs the receiver, one answers
-requests of sound paths, one lets results go when they are due.
+Threads: inputs may come from any. One thread speaks with the server and runs the receiver, one
+answers requests of sound paths, one lets results go when they are due.
 """
 import heapq
 import itertools
@@ -41,7 +42,7 @@ class Settings:
     socket: str = ""              # of a running server, instead
     tcp: int = 0
     token_file: str = ""
-    pace: str = "clock"           # "clock": of the middleware; "fast": results as soon as they are had
+    pace: str = "clock"           # "clock": of the middleware; "fast": as soon as results are had
     factor: float = 1.0           # how fast that clock goes
     platform: str = ""            # the first, where there are several
     array: str = ""
@@ -61,16 +62,17 @@ class Sonar:
     """
     clock  the middleware's time [s], a function
     emit   called with (kind, dict) for each result, from threads of this class. Kinds: "ping",
-           "samples", "files", "detections", "tracks", "truth" (each of a ping, with a list of that name),
-           "latency" (the last of a ping), "paths", "error", "ready"
+           "samples", "files", "detections", "tracks", "truth" (each of a ping, with a list of
+           that name), "latency" (the last of a ping), "paths", "error", "ready"
     """
 
     def __init__(self, settings, clock, emit):
         self.settings, self._clock, self._emit = settings, clock, emit
         self._lock = threading.Lock()
-        self._platform, self._targets, self._removed = {}, {}, set()
+        self._platform, self._targets = {}, {}  # as they were told, and taken
+        self._changes = {}           # of targets, not yet told to the server
         self._phones = None          # (places, time)
-        self._fresh = {"platform": False, "phones": False, "targets": set()}
+        self._fresh = {"platform": False, "phones": False}
         self._jobs = queue.Queue(MOST_PINGS_WAITING)
         self._requests = queue.Queue(MOST_REQUESTS_WAITING)
         self._stop = threading.Event()
@@ -96,7 +98,8 @@ class Sonar:
         if link is not None:
             link.close()
         for thread in self._threads:
-            thread.join(timeout=5)
+            if thread.is_alive():
+                thread.join(timeout=5)
 
     # Inputs ---------------------------------------------------------------------------------------
 
@@ -113,20 +116,17 @@ class Sonar:
         fields = quantities.target_of(fields, where)
         name = fields["name"]
         with self._lock:
-            if name not in self._targets and len(self._targets) >= MOST_TARGETS:
+            if name not in self._targets and \
+                    len(self._targets) + len(self._changes) >= MOST_TARGETS:
                 raise Wrong(f"{where}: {shown(name)}", f"one more than {MOST_TARGETS} targets",
                             "fewer; remove=true takes one out")
-            if fields.get("remove") == "true":
-                self._targets.pop(name, None)
-                self._removed.add(name)
-            else:
-                self._removed.discard(name)
-                known = self._targets.setdefault(name, {})
-                known.update(fields)
-                known["time"] = self._time_of(stamp)
-                known["where"] = where
-            if len(self._removed) <= MOST_TARGETS:
-                self._fresh["targets"].add(name)
+            before = self._changes.get(name, {})
+            anew = fields.get("remove") == "true" or "remove" in before
+            change = {**({} if anew else before), **fields, "where": where, "before": before}
+            if "x" in fields:
+                change["time"] = self._time_of(stamp)
+            before.pop("before", None)
+            self._changes[name] = change
 
     def set_phones(self, places, stamp=None):
         """places: as quantities.positions_of() has them"""
@@ -225,8 +225,10 @@ class Sonar:
         self._files_here = True
         self._tracker = Tracker(self.settings.tracker)
         with self._lock:  # a new session knows nothing
-            self._fresh = {"platform": bool(self._platform), "phones": self._phones is not None,
-                           "targets": set(self._targets) | self._removed}
+            self._fresh = {"platform": bool(self._platform), "phones": self._phones is not None}
+            for name, target in self._targets.items():
+                self._changes[name] = {**target, **self._changes.get(name, {}), "before": target}
+            self._targets.clear()
         self._listen(link)
         self._emit("ready", {"scenario": link.greeting["scenario"], "listening": self.listening,
                              "channels": link.greeting["channels"],
@@ -302,11 +304,9 @@ class Sonar:
         forgotten. → whether the platform is where the vehicle is
         """
         with self._lock:
-            fresh, self._fresh = self._fresh, {"platform": False, "phones": False, "targets": set()}
+            fresh, self._fresh = self._fresh, {"platform": False, "phones": False}
             platform, phones = dict(self._platform), self._phones
-            targets = {name: dict(self._targets.get(name, {"remove": True}))
-                       for name in fresh["targets"]}
-            self._removed.clear()
+            changes, self._changes = self._changes, {}
         ahead, self._place_time = t - self._place_time, t
         self._place = [self._place[0] + self._velocity[0] * ahead,
                        self._place[1] + self._velocity[1] * ahead, self._place[2]]
@@ -322,8 +322,8 @@ class Sonar:
                 "heading_deg" in platform and phones is None:
             self._tell("the array", t, array=self._one("array", {
                 "heading_deg": platform["heading_deg"][0]}))
-        for name, target in targets.items():
-            self._update_target(name, target, t)
+        for name, change in changes.items():
+            self._update_target(name, change, t)
         return good
 
     def _tell(self, what, t, **change):
@@ -378,32 +378,57 @@ class Sonar:
         rows = [[one - at for one, at in zip(row, fix)] for row in places]
         return self._one("array", {"positions": rows, "offset": [0.0, 0.0, 0.0]})
 
-    def _update_target(self, name, target, t):
-        if target.get("remove") is True:
+    def _update_target(self, name, change, t):
+        """Tells what is said of a target. If that is refused the latest message is forgotten."""
+        before = change.pop("before", None)
+        where = f"{change['where']}: {name}"
+        if change.get("remove") == "true":
             if name in self._known_targets and \
-                    self._tell(shown(name), t, targets=[{"name": name, "remove": True}]):
+                    self._tell(where, t, targets=[{"name": name, "remove": True}]):
                 self._known_targets.discard(name)
-            return
-        fields = {"name": name}
-        for key in ("speed", "heading_deg", "strength_db"):
-            if key in target:
-                fields[key] = target[key]
-        if "x" in target:
-            velocity = quantities.velocity_of(target.get("speed", 0.0), target.get("heading_deg", 0.0))
-            ahead = t - self._since(target["time"])
-            fields["position"] = [target["x"] + velocity[0] * ahead, target["y"] + velocity[1] * ahead,
-                                  target.get("depth", 0.0)]
-            if "depth" not in target:
-                if name not in self._known_targets:
-                    self.error(f"{target['where']}: {name}: found no depth, expected one")
-                    return
-        if name in self._known_targets and "heading_deg" not in fields:
-            fields.pop("speed", None)
-        if self._tell(f"{target['where']}: {name}", t, targets=[fields]):
-            self._known_targets.add(name)
-        elif name not in self._known_targets:
             with self._lock:
                 self._targets.pop(name, None)
+            return
+        known = self._carried_on(name, t)
+        whole = {**known, **change}
+        fields = {"name": name}
+        if "strength_db" in change:
+            fields["strength_db"] = change["strength_db"]
+        if "heading_deg" in change:
+            fields["heading_deg"] = change["heading_deg"]
+            if "speed" in whole:
+                fields["speed"] = whole["speed"]
+        if "x" in change:
+            east, north = self._velocity_of(whole)
+            ahead = t - self._since(change["time"])
+            whole |= {"x": change["x"] + east * ahead, "y": change["y"] + north * ahead}
+            fields["position"] = [whole["x"], whole["y"], change["depth"]]
+        whole["time"] = self._origin + t
+        if self._tell(where, t, targets=[fields]):
+            self._known_targets.add(name)
+            with self._lock:
+                self._targets[name] = whole
+            return
+        if known:
+            with self._lock:
+                self._targets[name] = known
+        if before:
+            self._update_target(name, before, t)
+
+    @staticmethod
+    def _velocity_of(target):
+        return quantities.velocity_of(target.get("speed", 0.0), target.get("heading_deg", 0.0))
+
+    def _carried_on(self, name, t):
+        """What is known of a target, where it is at t."""
+        with self._lock:
+            known = dict(self._targets.get(name, {}))
+        if "x" in known:
+            east, north = self._velocity_of(known)
+            ahead = t - self._since(known["time"])
+            known |= {"x": known["x"] + east * ahead, "y": known["y"] + north * ahead,
+                      "time": self._origin + t}
+        return known
 
     # Pings ----------------------------------------------------------------------------------------
 
@@ -432,7 +457,7 @@ class Sonar:
             self._warn(line)
         taken = {"ping": number, "latency": answer["latency"], "behind": answer.get("behind", 0.0)}
         end = at
-        if "samples" in answer and answer["samples"].get("shape") and self.settings.delivery != "none":
+        if answer.get("samples", {}).get("shape") and self.settings.delivery != "none":
             end = self._deliver(ping, number, at)
         if answer.get("file") and self._files_here:
             taken["receiver"] = self._receive(answer["file"], number, at, end)
@@ -503,14 +528,15 @@ class Sonar:
         return end
 
     def _of_file(self, answer):
-        """Samples, pulse and places of a ping file. → [phones × samples], [samples], [phones × 3]; or
-        three times None: it is not here
+        """Samples, pulse and places of a ping file. → [phones × samples], [samples], [phones ×
+        3]; or three times None: it is not here
         """
         try:
             import h5py
             with h5py.File(answer["file"]) as f:
                 k = answer["index"]
-                data, pulse, phones = f[answer["dataset"]][k], f["replica"][:], f["phone_position"][k]
+                data, pulse = f[answer["dataset"]][k], f["replica"][:]
+                phones = f["phone_position"][k]
         except (ImportError, OSError, KeyError) as error:
             if self._files_here:
                 self.error(f"the ping's file cannot be read here, so there are neither samples nor "

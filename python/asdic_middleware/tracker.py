@@ -1,10 +1,11 @@
 """Tracks of what a receiver finds from ping to ping.
 
-A track is a Kalman filter of place and velocity (x, y, vx, vy) in the plane, moved by white noise of
-acceleration (Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Navigation,
-2001, section 6.2.2). A detection measures its place, with errors along and across the line of sight,
-and the rate of its range, which Doppler shows. Each side of an array that hears right and left alike
-is tracked; a turn tells which is real.
+A track is a Kalman filter of place and velocity (x, y, vx, vy) in the plane, moved by white noise
+of acceleration (Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and
+Navigation, 2001, section 6.2.2). A detection measures its place, with errors along and across the
+line of sight,
+and the rate of its range, which Doppler shows. Each side of an array that hears right and left
+alike is tracked; a turn tells which is real.
 
 A track is believed after `hits` in its first `of` pings, and ends after `misses` pings without one.
 """
@@ -111,12 +112,21 @@ class Tracker:
         track.time = max(time, track.time)
 
     def _assign(self, measured):
-        """The nearest first, each track and each measurement once. → measurements without a track"""
+        """The nearest first, each track and each measurement once. → measurements without a
+        track
+        """
         pairs = []
+        places = np.array([m[1][:2] for m in measured]).reshape(-1, 2)
+        ahead = np.array([m[0] for m in measured])
+        spreads = np.array([m[3][0, 0] + m[3][1, 1] for m in measured])
         for i, track in enumerate(self.tracks):
-            for j, (when, z, u, noise, _) in enumerate(measured):
-                if np.hypot(*(z[:2] - track.state[:2])) > 5000 + 100 * track.position_sigma:
-                    continue
+            # what lies beyond √gate of the largest spread that it may have is not looked at
+            later = (ahead - track.time)[:, None]
+            off = places - track.state[:2] - later * track.state[2:]
+            most = (track.position_sigma + np.abs(later[:, 0]) * np.sqrt(
+                track.covariance[2, 2] + track.covariance[3, 3]))**2 + spreads
+            for j in np.flatnonzero((off**2).sum(axis=1) <= GATE * most):
+                when, z, u, noise, _ = measured[j]
                 innovation, spread, _ = self._innovation(track, when, z, u, noise)
                 distance = float(innovation @ np.linalg.solve(spread, innovation))
                 if distance < GATE:

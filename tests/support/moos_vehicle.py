@@ -24,7 +24,8 @@ for number in range(1, pings + 1):
     x += speed * math.sin(math.radians(heading)) * (now - begun)
     y += speed * math.cos(math.radians(heading)) * (now - begun)
     begun = now
-    for name, value in (("X", x), ("Y", y), ("DEPTH", depth), ("HEADING", heading), ("SPEED", speed)):
+    for name, value in (("X", x), ("Y", y), ("DEPTH", depth),
+                        ("HEADING", heading), ("SPEED", speed)):
         db.notify("NAV_" + name, value)
     db.notify("ACTIVE_SONAR_COMMAND", f"elevation={elevation:g},type=cw,centre_frequency=4000,"
               "duration=1,window=hann,level=230,beamwidth=8")
@@ -39,7 +40,8 @@ for number in range(1, pings + 1):
                 loudest = fields
     if loudest is not None:
         heading = 40.0  # a line of phones hears right and left alike; a turn tells which it is
-        elevation = math.degrees(math.atan2(depth - 125.0, float(loudest["range"]))) - 4.5  # rays bend
+        look = math.atan2(depth - 125.0, float(loudest["range"]))
+        elevation = math.degrees(look) - 4.5  # rays bend
 db.notify("VEHICLE_DONE", float(tracks))
 time.sleep(1)
 db.close()

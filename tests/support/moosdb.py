@@ -1,5 +1,6 @@
-"""A small MOOSDB for tests, written from the protocol (docs/formats/middleware.md) and apart from the
-client that it tests. It keeps the latest value of each variable, sends those that are asked for, and
+"""A small MOOSDB for tests, written from the protocol (docs/formats/middleware.md) and apart from
+the client that it tests. It keeps the latest value of each variable, sends those that are asked
+for, and
 can say what no database would.
 
     with SmallMoosDB() as db:
@@ -58,8 +59,10 @@ def messages(data):
 
 
 class SmallMoosDB:
-    def __init__(self, port=0, warp=1.0):
-        self.warp = warp
+    """hostname, ahead: of a machine whose clock is so far ahead [s of MOOSTime]"""
+
+    def __init__(self, port=0, warp=1.0, hostname=None, ahead=0.0):
+        self.warp, self.ahead, self.hostname = warp, ahead, hostname or socket.gethostname()
         self.values, self.log, self.clients = {}, [], {}
         self.changed = threading.Condition(threading.RLock())
         self.door = socket.socket()
@@ -71,7 +74,7 @@ class SmallMoosDB:
         threading.Thread(target=self._doorkeeper, daemon=True).start()
 
     def now(self):
-        return time.time() * self.warp
+        return time.time() * self.warp + self.ahead
 
     def _doorkeeper(self):
         while self.open:
@@ -96,7 +99,7 @@ class SmallMoosDB:
                     return
                 name = hello["text"]
                 self.clients[name] = {"end": end, "wants": set()}
-                end.sendall(packet({"kind": "W", "aux": "hostname=test", "community": "small",
+                end.sendall(packet({"kind": "W", "aux": f"hostname={self.hostname}", "community": "small",
                                     "time": self.now(), "value": 0.0, "text": "asynchronous"}))
                 self.changed.notify_all()
             while True:
@@ -168,7 +171,9 @@ class SmallMoosDB:
             return [m for m in self.log if m["key"] == key]
 
     def wait(self, key, holds=lambda m: True, seconds=30, after=0):
-        """→ the first message of a variable that holds, of those after so many. \\throws TimeoutError"""
+        """→ the first message of a variable that holds, of those after so many. \\throws
+        TimeoutError
+        """
         with self.changed:
             found = []
 

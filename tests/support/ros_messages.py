@@ -1,7 +1,8 @@
 """The classes of ros/asdic_msgs for tests.
 
 generate(folder)   Python modules as ROS 1 has them, by Debian's genpy
-strict(folder)     stand-ins for those of ROS 2: fields of the types that the files say, nothing else
+strict(folder)     stand-ins for those of ROS 2: fields of the types that the files say, nothing
+                   else
 """
 import re
 import subprocess
@@ -54,7 +55,9 @@ def _check(kind, value):
 
 
 def strict(header):
-    """→ a module with a class for each message, which refuses what ROS 2's would. header: makes one"""
+    """→ a module with a class for each message, which refuses what ROS 2's would. header: makes
+    one
+    """
     module = types.ModuleType("msg")
     starts = {"float64": lambda: 0.0, "float32": lambda: 0.0, "uint32": lambda: 0, "bool": lambda: False,
               "string": lambda: "", "std_msgs/Header": header}

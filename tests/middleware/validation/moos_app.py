@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""asdic-moos in a community: a small MOOSDB (tests/support), a vehicle, and `asdic serve` behind it.
+"""asdic-moos in a community: a small MOOSDB (tests/support), a vehicle, and `asdic serve` behind
+it.
 
-Truth: what a client of `asdic serve` gets by itself, bit for bit; where the vehicle's script has the
-target; the clock.
+Truth: what a client of `asdic serve` gets by itself, bit for bit; where the vehicle's script has
+the target; the clock.
 
     ASDIC=build/ci/bin/asdic moos_app.py [TEST]
 """
@@ -77,7 +78,8 @@ def app(db, folder, block, program=ASDIC):
         f"ServerPort = {db.port}\nMOOSTimeWarp = {db.warp:g}\nProcessConfig = asdic-moos\n"
         f"{{\nProgram = {program}\nFolder = {folder}/data\n{block}\n}}\n")
     with open(folder / "said", "w") as said:
-        process = subprocess.Popen([str(ROOT / "python/asdic-moos"), str(folder / "m.moos")], stderr=said)
+        process = subprocess.Popen([str(ROOT / "python/asdic-moos"),
+                                   str(folder / "m.moos")], stderr=said)
     try:
         db.wait_client("asdic-moos", "BELLHOP_REQUEST")
         yield process
@@ -97,8 +99,8 @@ def samples_of(message):
 
 
 def test_bits():
-    """What goes in does what it says: the samples of asdic-moos are those that a client gets who tells
-    `asdic serve` the same. All is at rest, so that no time matters.
+    """What goes in does what it says: the samples of asdic-moos are those that a client gets who
+    tells `asdic serve` the same. All is at rest, so that no time matters.
     """
     phones = [[100.0, 50.0, 250.0], [101.0, 50.0, 250.0], [102.0, 51.0, 251.0]]
     with tempfile.TemporaryDirectory() as folder, SmallMoosDB() as db, \
@@ -116,7 +118,8 @@ def test_bits():
         replica = np.load(db.of("ACTIVE_SONAR_REPLICA_FILE")[0]["text"])
         with Client.start(Path(folder) / "sea.toml", program=ASDIC) as direct:
             direct.update(platform={"position": [100, 50, 240], "heading_deg": 90, "speed": 0})
-            direct.update(array={"positions": (np.array(phones) - [100, 50, 240]), "offset": [0, 0, 0]})
+            direct.update(array={"positions": np.array(phones) - [100, 50, 240],
+                                 "offset": [0, 0, 0]})
             direct.update(targets=[{"name": "rock", "position": [2500, 1000, 400], "speed": 0.0,
                                     "heading_deg": 10.0, "strength_db": 20}])
             ping = direct.ping(waveform={"kind": "lfm", "start_frequency": 950.0, "end_frequency": 1050.0,
@@ -125,7 +128,8 @@ def test_bits():
         check(data.shape[0] == 3 and data.tobytes() == ping.samples.tobytes(), "bits of samples")
         check(replica.tobytes() == ping.replica.tobytes(), "bits of the replica")
         blocks = [samples_of(m) for m in db.of("ACTIVE_SONAR_SAMPLES")]
-        check(np.concatenate([b for _, b in blocks], axis=1).tobytes() == data.tobytes(), "in blocks")
+        check(np.concatenate([b for _, b in blocks], axis=1).tobytes()
+              == data.tobytes(), "in blocks")
         rate = blocks[0][0]["sample_rate"]
         for k, (head, block) in enumerate(blocks):
             check(head["block"] == k and head["ping"] == 1 and head["carrier"] == 1000.0, f"{head}")
@@ -145,12 +149,15 @@ def test_bits():
         db.post("ACTIVE_SONAR_COMMAND", "")
         db.wait("ACTIVE_SONAR_LATENCY", lambda m: "ping=2" in m["text"])
         kept = {p.name for p in Path(folder, "data").rglob("*") if p.is_file()}
-        check(kept == {"ping-000002-data.npy", "ping-000002-replica.npy", "ping-000002.h5"}, f"{kept}")
+        check(kept == {"ping-000002-data.npy", "ping-000002-replica.npy", "ping-000002.h5"},
+              f"{kept}")
         check(not [m for m in db.log if m["key"] == "FAULT"], "packets as they should be")
 
 
 def check_paths(db, folder):
-    """BELLHOP_RESPONSE has what `asdic arrivals` and `asdic rays` print, from the vehicle's depth."""
+    """BELLHOP_RESPONSE has what `asdic arrivals` and `asdic rays` print, from the vehicle's
+    depth.
+    """
     for request, words in (
             ({"range": 2000, "receiver_depth": 100, "frequency": 900, "id": "a"},
              ["arrivals", "--range", "2000", "--receiver-depth", "100", "--frequency", "900",
@@ -171,8 +178,8 @@ def check_paths(db, folder):
 
 
 def test_refusals():
-    """A wrong value is told once, in one line, and changes nothing; a flood is not told one by one. The
-    database dies and comes back, and says what is no packet: the app is there again.
+    """A wrong value is told once, in one line, and changes nothing; a flood is not told one by
+    one. The database dies and comes back, and says what is no packet: the app is there again.
     """
     with tempfile.TemporaryDirectory() as folder:
         db = SmallMoosDB()
@@ -212,7 +219,8 @@ def test_refusals():
                          b"\x09\0\0\0\xff\0\0\0\0", b"\x50\0\0\0\1\0\0\0\1" + bytes(71)):
                 db.raw("asdic-moos", hurt)
                 with db.changed:
-                    check(db.changed.wait_for(lambda: "asdic-moos" not in db.clients, 20), "hung up")
+                    check(db.changed.wait_for(lambda: "asdic-moos" not in db.clients, 20),
+                          "hung up")
                 db.wait_client("asdic-moos", "NAV_X")
             pings = len(db.of("ACTIVE_SONAR_PING"))
             db.post("ACTIVE_SONAR_COMMAND", "")
@@ -247,9 +255,65 @@ def flood(db):
     check(1 <= told <= 22 * (took + 2), f"{told} errors were told in {took} s")
 
 
+def test_clock():
+    """A database on a machine whose clock is 1000 s ahead: MOOSTime is its time. A `asdic serve`
+    that runs already is joined, and when it is killed and comes back, the session is told all anew.
+    """
+    with tempfile.TemporaryDirectory() as folder, SmallMoosDB(warp=2, hostname="elsewhere", ahead=1000) as db:
+        (Path(folder) / "sea.toml").write_text(SCENARIO)
+        server = joined(folder)
+        try:
+            with app(db, folder, "Socket = s.sock\nReceiver = no\nDelivery = pings"):
+                for name, value in (("NAV_X", 10.0), ("NAV_Y", 20.0),
+                                    ("NAV_DEPTH", 100.0), ("NAV_SPEED", 0.0)):
+                    db.post(name, value)
+                db.post("SIM_TARGET", "name=rock,x=1500,y=0,depth=400,speed=0,heading=0,strength=20")
+                # refused, with what was said with it
+                db.post("SIM_TARGET", "name=rock,depth=5000,x=1,y=1")
+                db.post("ACTIVE_SONAR_COMMAND", "")
+                first = fields(db.wait("ACTIVE_SONAR_PING"))
+                check(abs(float(first["time"]) - db.now()) < 20,
+                      f"{float(first['time']) - db.now()} s off")
+                db.wait("ACTIVE_SONAR_ERROR", lambda m: "SIM_TARGET" in m["text"])
+                db.wait("ACTIVE_SONAR_LATENCY")
+                check(not db.of("ACTIVE_SONAR_DETECTION") and db.of("ACTIVE_SONAR_SAMPLES"),
+                      "no receiver")
+                server.kill()
+                server.wait()
+                db.wait("ACTIVE_SONAR_ERROR", lambda m: "closed the connection" in m["text"])
+                server = joined(folder)
+                db.post("SIM_TARGET", "name=rock,strength=30")
+                db.post("ACTIVE_SONAR_COMMAND", "")
+                db.wait("ACTIVE_SONAR_LATENCY", after=1)
+                second = fields(db.of("ACTIVE_SONAR_PING")[1])
+                check((second["x"], second["y"], second["depth"])
+                      == ("10", "20", "100"), f"{second}")
+                truths = [fields(m) for m in db.of("ACTIVE_SONAR_TRUTH")]
+                for truth in truths:
+                    way = 2 * np.linalg.norm([1490, 20, 300])
+                    check(abs(float(truth["echo_time"]) - way / 1500) < 0.01, f"{truth}")
+                louder = float(truths[1]["echo_level_db"]) - float(truths[0]["echo_level_db"])
+                check(abs(louder - 10) < 1e-6, f"ten decibels more, not {louder}")
+        finally:
+            server.kill()
+            server.wait()
+
+
+def joined(folder):
+    """→ an `asdic serve` that runs"""
+    at = Path(folder) / "s.sock"
+    at.unlink(missing_ok=True)
+    server = subprocess.Popen([ASDIC, "serve", Path(folder) / "sea.toml", "--pace", "2", "--socket", at],
+                              stderr=subprocess.DEVNULL)
+    while not at.exists():
+        time.sleep(0.02)
+    return server
+
+
 def test_loop():
-    """ping → samples → detections → track → next command, by the clock, 50 times as fast. The mission is the
-    guide's. The vehicle turns to the track, so that the mirror's track ends and the target's goes on.
+    """ping → samples → detections → track → next command, by the clock, 50 times as fast. The
+    mission is the guide's. The vehicle turns to the track, so that the mirror's track ends and the
+    target's goes on.
     """
     with tempfile.TemporaryDirectory() as folder, SmallMoosDB(warp=50) as db:
         block = (ROOT / "scenarios/vehicle.moos").read_text().split("{", 1)[1].rsplit("}", 1)[0]
@@ -275,8 +339,10 @@ def test_loop():
         off = [np.hypot(float(t["x"]) - (20000 - 4 * (float(t["time"]) - told)), float(t["y"]) - 6000)
                for t in last]
         best = last[int(np.argmin(off))]
-        # bearing's error is told as 1 degree, 350 m at 20 km; the filter's own measure, and three of it
-        check(min(off) < 3 * float(best["position_sigma"]), f"{min(off)} m, sigma {best['position_sigma']}")
+        # bearing's error is told as 1 degree, 350 m at 20 km; the filter's own
+        # measure, and three of it
+        check(min(off) < 3 * float(best["position_sigma"]),
+              f"{min(off)} m, sigma {best['position_sigma']}")
         check(float(best["hits"]) >= 6 and abs(float(best["vx"]) + 4) < 0.5, f"{best}")
         mirrors = [t for t in tracks if float(t["x"]) < -15000 and t["ended"] == "true"]
         check(mirrors, "the mirror's track ends after the turn")
@@ -286,7 +352,8 @@ def test_loop():
               f"the loudest detection is the echo: {detection}")
         check(len(came) > 8 * 30, f"blocks: {len(came)}")
         for (number, block), (end, at) in came.items():
-            check(at > end - 0.5, f"block {block} of ping {number} came {end - at} s before its sound")
+            check(at > end - 0.5,
+                  f"block {block} of ping {number} came {end - at} s before its sound")
 
 
 def watch_blocks(db, came):
@@ -339,7 +406,9 @@ for line in sys.stdin:
 
 
 def test_listening():
-    """Of a server that listens the stream's blocks are published as they come, and pings give the truth."""
+    """Of a server that listens the stream's blocks are published as they come, and pings give the
+    truth.
+    """
     with tempfile.TemporaryDirectory() as folder, SmallMoosDB() as db:
         stub = Path(folder) / "stub"
         stub.write_text(LISTENER)

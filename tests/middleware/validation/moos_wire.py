@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """MOOS's wire, mission files and values: what asdic-moos reads before it does anything.
 
-Truth: a recorded session of MOOSDB with its own client (tests/data/moos), a second description of the
-packets (tests/support/moosdb.py). Whatever bytes or texts come, they are taken or refused in one line.
+Truth: a recorded session of MOOSDB with its own client (tests/data/moos), a second description of
+the packets (tests/support/moosdb.py). Whatever bytes or texts come, they are taken or refused in
+one line.
 """
 import math
 import random
@@ -18,6 +19,7 @@ from asdic_middleware import mission, packets, quantities  # noqa: E402
 from asdic_middleware.moos_app import App  # noqa: E402
 from asdic_middleware.packets import Malformed  # noqa: E402
 from asdic_middleware.quantities import Wrong  # noqa: E402
+from deep import DEEP  # noqa: E402
 
 SESSION = [line.split() for line in (ROOT / "tests/data/moos/session.txt").read_text().splitlines()
            if not line.startswith("#")]
@@ -71,14 +73,17 @@ def test_ours_as_theirs():
 
 
 def test_hostile_packets():
-    """100 000 packets that are none, or nearly: each is read or refused, none hurts, in seconds."""
+    """100 000 packets (a million in the full form) that are none, or nearly: each is read or
+    refused, none hurts, in seconds.
+    """
+    count = 1_000_000 if DEEP else 100_000
     rng = random.Random(20130601)
     seeds = [data.removeprefix(packets.GREETING) for data in [*recorded(">"), *recorded("<")]]
     begun = time.process_time()
     taken = refused = 0
     edges = [b"\xff\xff\xff\xff", b"\x00\x00\x00\x00", b"\xff\xff\xff\x7f", b"\x00\x00\x00\x80",
              b"\x01\x00\x00\x00"]
-    for _ in range(100_000):
+    for _ in range(count):
         data = bytearray(rng.choice(seeds))
         for _ in range(rng.randrange(1, 4)):
             at = rng.randrange(len(data))
@@ -102,8 +107,9 @@ def test_hostile_packets():
             refused += 1
             check(len(str(error)) < 100, "a short reason")
     took = time.process_time() - begun
-    check(refused > 50_000 and taken > 100, f"some of each: {taken} taken, {refused} refused")
-    check(took < 20, f"within seconds: {took}")
+    check(refused > count / 2 and taken > count / 1000,
+     f"some of each: {taken} taken, {refused} refused")
+    check(took < count / 5000, f"within seconds: {took}")
     for length in (-1, 0, 8, (64 << 20) + 1, 0x7FFFFFFF):  # before any of it is read
         try:
             packets.length_of(length.to_bytes(4, "little", signed=True) + bytes(5))
@@ -181,7 +187,8 @@ def test_requests():
     check(asked["output"] == "arrivals" and asked["range"] == 2e4 and asked["id"] == 7, "a request")
     check(quantities.paths_of('{"output": "ray", "count": 5}', "B")["output"] == "rays", "of rays")
     for text, said in (('{"range": 1}', "B: receiver_depth"), ("[]", "a JSON object"),
-                       ('{"output": ".shd"}', "arrivals or rays"), ('{"id": [1]}', "a short string"),
+                       ('{"output": ".shd"}',
+                        "arrivals or rays"), ('{"id": [1]}', "a short string"),
                        ('{"range": 1e999, "receiver_depth": 1}', "a number from"),
                        ('{"range": "--force", "receiver_depth": 1}', "a number from"),
                        ('{"sound_speed": {"depth": [1, 0], "speed": [1500, 1500]}}', "increasing"),
@@ -221,7 +228,8 @@ def test_missions():
         made = app("scenario = x.toml // here\n Nav_X = NODE_X\nAppTick = 4\nPace = fast\n"
                    "Arguments = --set 'pings={samples=\"baseband\"}'", "MOOSTimeWarp = 10")
         check(made.names["NAV_X"] == "NODE_X" and made.clock.warp == 10, "names are in any case")
-        check(made.settings.arguments == ["--set", 'pings={samples="baseband"}'], "words as in a shell")
+        check(made.settings.arguments == ["--set", 'pings={samples="baseband"}'],
+              "words as in a shell")
         check("NODE_X" in made.db.variables and "NAV_X" not in made.db.variables, "registered by that")
         check("NODE_X (NAV_X)" in made.told(), made.told())
         for text, said in (

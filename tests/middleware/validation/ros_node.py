@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""The node of ROS 1 between a rosmaster and `asdic serve`; messages of asdic_msgs are generated for it.
+"""The node of ROS 1 between a rosmaster and `asdic serve`; messages of asdic_msgs are generated
+for it.
 
 Truth: what a client of `asdic serve` gets by itself, bit for bit; geometry.
 
@@ -124,7 +125,8 @@ def run(folder):
         done = ears.wait("latency")
         check(done.ping == 1 and done.receiver > 0, "the ping is done")
         compare(folder, ears, phones, messages)
-        say["paths_request"].publish(String(json.dumps({"id": 3, "range": 2000, "receiver_depth": 100})))
+        say["paths_request"].publish(
+            String(json.dumps({"id": 3, "range": 2000, "receiver_depth": 100})))
         paths = json.loads(ears.wait("paths").data)
         check(paths["ok"] and paths["id"] == 3 and paths["legs"][0]["arrivals"], "sound paths")
         say["platform"].publish(msg.Platform(x=0.0, y=0.0, depth=math.nan))
@@ -156,7 +158,8 @@ def compare(folder, ears, phones, messages):
     got = np.concatenate([messages.samples_of(b) for b in blocks], axis=1)
     check(got.tobytes() == ping.samples.tobytes(), "bits of samples")
     sent = ears.wait("ping")
-    check((sent.elevation_deg, sent.x, json.loads(sent.waveform)["kind"]) == (-5.0, 100.0, "lfm"), f"{sent}")
+    check((sent.elevation_deg, sent.x, json.loads(sent.waveform)
+          ["kind"]) == (-5.0, 100.0, "lfm"), f"{sent}")
     at = 0
     for block in blocks:
         late = block.header.stamp.to_sec() - sent.header.stamp.to_sec() - at / rate
@@ -164,13 +167,15 @@ def compare(folder, ears, phones, messages):
         at += block.samples
         shape = np.array([block.phone_x, block.phone_y, block.phone_depth]).T
         check(np.abs(shape - phones).max() < 1e-6, "the geometry of the array")
-        check((block.ping, block.channels, block.carrier, block.is_complex) == (1, 3, 1000.0, True), "its words")
+        check((block.ping, block.channels, block.carrier, block.is_complex)
+              == (1, 3, 1000.0, True), "its words")
     truth, = ears.wait("truth").truth
     distance = np.linalg.norm([2400, 950, 160])
     check(truth.target == "rock" and abs(truth.echo_time - 2 * distance / 1500) < 0.01, f"{truth}")
     found = ears.wait("detections")
     check(len(found.detections) <= 5 and found.of >= len(found.detections), "the loudest")
-    # straight there and back, or by the surface on one of the ways: its image is 640 m, not 160 m, away
+    # straight there and back, or by the surface on one of the ways: its image
+    # is 640 m, not 160 m, away
     ways = [2 * distance, distance + np.linalg.norm([2400, 950, 640])]
     near = [d for d in found.detections if min(abs(d.time - way / 1500) for way in ways) < 0.02]
     check(near, f"the echo is found: {[d.time for d in found.detections]}")
