@@ -6,6 +6,7 @@ import select
 import socket
 import threading
 import time
+from collections import deque
 
 from . import packets
 from .packets import Malformed, Message, Type
@@ -53,7 +54,7 @@ class MoosDB:
         self.community = ""
         self.connected = False
         self.connections = self.malformed = self.dropped = 0
-        self._out, self._out_bytes, self._lock = [], 0, threading.Lock()
+        self._out, self._out_bytes, self._lock = deque(), 0, threading.Lock()
         self._wake_end, self._wake = socket.socketpair()
         self._wake.setblocking(False)
         self._wake_end.setblocking(False)
@@ -79,7 +80,7 @@ class MoosDB:
             self._out.append(message)
             self._out_bytes += len(message.text)
             while len(self._out) > MOST_WAITING or self._out_bytes > MOST_WAITING_BYTES:
-                self._out_bytes -= len(self._out.pop(0).text)
+                self._out_bytes -= len(self._out.popleft().text)
                 self.dropped += 1
         self._stir()
 
@@ -188,8 +189,13 @@ class MoosDB:
                 self._take(coming)
 
     def _next_packet(self):
+        """The oldest messages that wait, about a mebibyte of them."""
+        messages, size = [], 0
         with self._lock:
-            messages, self._out, self._out_bytes = self._out, [], 0
+            while self._out and size < 1 << 20:
+                messages.append(self._out.popleft())
+                size += len(messages[-1].text)
+            self._out_bytes -= size
         return packets.packed(messages) if messages else b""
 
     def _take(self, coming):
