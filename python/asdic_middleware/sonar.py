@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from . import paths, quantities, receiver
+from . import paths, quantities, receiver, stream
 from .link import Client, Link, Refused
 from .quantities import Wrong, shown
 from .tracker import Tracker, TrackerSettings
@@ -29,6 +29,7 @@ MOST_HELD_BYTES = 512 << 20  # of samples that are not due
 ERRORS_PER_SECOND = 20
 TRUTH = ("present", "paths", "echo_time", "echo_level_db", "echo_peak_db", "reverberation_db",
          "noise_db", "echo_to_background_db")  # of a target, in a ping's answer
+SLEW = 10.0                  # while listening a place that was told wrongly is gone to so fast [m/s]
 MOST_SKEW = 10.0             # of a stamp against the clock [s]; beyond it counts as now
 
 
@@ -81,10 +82,13 @@ class Sonar:
         self._errors = [0.0, 0, 0]   # second, told in it, held back
         self._files = []
         self._link, self.listening, self._format, self._origin = None, False, None, 0.0
+        self._twin, self._heard_of, self._pending = None, None, []  # of a stream
+        self._keep_heard = 30.0 * settings.factor  # [s]: while the twin works
         self._velocity, self._place = (0.0, 0.0), None
         self._tracker = Tracker(settings.tracker)
         self._threads = [threading.Thread(target=t, daemon=True, name=t.__name__.strip("_"))
-                         for t in (self._work, self._answer_requests, self._let_go)]
+                         for t in (self._work, self._answer_requests, self._let_go,
+                                   self._cut_records)]
 
     def start(self):
         for thread in self._threads:
@@ -188,8 +192,10 @@ class Sonar:
                     self.error(said)
             finally:
                 link, self._link = self._link, None
-                if link is not None:
-                    link.close()
+                twin, self._twin = self._twin, None
+                for end in (link, twin):
+                    if end is not None:
+                        end.close()
             self._stop.wait(2.0)
 
     def _connect(self):
@@ -222,17 +228,17 @@ class Sonar:
         self._known_targets = {t["name"] for t in state["targets"]}
         self._place, self._place_time = list(self._platform_now["position"]), state["time"]
         self._velocity = tuple(self._platform_now["velocity"][:2])
-        self._files_here = True
+        self._files_here = self._known_place = True
         self._tracker = Tracker(self.settings.tracker)
         with self._lock:  # a new session knows nothing
             self._fresh = {"platform": bool(self._platform), "phones": self._phones is not None}
             for name, target in self._targets.items():
                 self._changes[name] = {**target, **self._changes.get(name, {}), "before": target}
             self._targets.clear()
-        self._listen(link)
-        self._emit("ready", {"scenario": link.greeting["scenario"], "listening": self.listening,
-                             "channels": link.greeting["channels"],
-                             "sample_rate": link.greeting["sample_rate"]})
+        self.listening, self._told = False, []
+        to_listen = self._wants_to_listen()
+        if not to_listen:
+            self._ready(link)
         for line in link.greeting.get("warnings", []):
             self._warn(line)
         updated = time.monotonic()
@@ -240,6 +246,14 @@ class Sonar:
             try:
                 fields, where = self._jobs.get(timeout=0.1)
             except queue.Empty:
+                fields = None
+            if to_listen and (fields is not None or {"x", "y", "depth"} <= set(self._platform)):
+                # nothing jumps while it listens: all that was told is done before
+                to_listen = False
+                self._update(self._now())
+                self._listen(link)
+                self._ready(link)
+            if fields is None:
                 if link.broken:
                     raise ConnectionError(link.broken)
                 if self.listening and \
@@ -248,6 +262,16 @@ class Sonar:
                     self._update(self._now())
                 continue
             self._ping(fields, where)
+
+    def _ready(self, link):
+        self._emit("ready", {"scenario": link.greeting["scenario"], "listening": self.listening,
+                             "channels": link.greeting["channels"],
+                             "sample_rate": link.greeting["sample_rate"]})
+
+    def _wants_to_listen(self):
+        s = self.settings
+        return s.pace != "fast" and \
+            (s.delivery == "listen" or s.delivery == "auto" and not s.receiver)
 
     def _check_pace(self, pace):
         wanted = "fast" if self.settings.pace == "fast" else self.settings.factor
@@ -269,25 +293,38 @@ class Sonar:
         return max(self._clock() - self._origin, 0.0)
 
     def _listen(self, link):
-        """Begins to hear, where the server can and it is wanted."""
+        """Begins to hear, where the server can."""
         s = self.settings
-        self.listening = False
-        wanted = s.delivery == "listen" or s.delivery == "auto" and not s.receiver
-        if not wanted or s.pace == "fast":
-            return
         try:
             # its answer comes before its blocks, but is taken by another thread: both wait here
             with self._due:
                 self._format, _ = link.call("listen", block=s.block)
+                self._heard_of = stream.Heard(self._format["sample_rate"])
+                self._pending.clear()
             self.listening = True
         except Refused as no:
             if no.code != "command" or s.delivery == "listen":
                 raise
+            return
+        if s.receiver and s.scenario:
+            Path(s.folder).mkdir(parents=True, exist_ok=True)
+            rate = self._format["sample_rate"] if "carrier" in self._format else None
+            self._twin = stream.Twin(s.scenario, s.arguments, s.folder, rate, s.program)
+            for at, change in self._told:
+                self._twin.update(at, change)
+        elif s.receiver:
+            self.error("the receiver rests: found no Scenario in the settings, expected that of "
+                       "the server")
 
     def _heard(self, answer, samples):
         """A block of a stream."""
         with self._due:
             form = self._format
+            self._heard_of.add(answer["time"], samples)
+            oldest = min((job["start"] for job in self._pending), default=np.inf)
+            self._heard_of.forget(min(oldest, self._heard_of.end - self._keep_heard))
+            if self._pending and self._heard_of.end >= min(job["end"] for job in self._pending):
+                self._due.notify_all()
         self._emit("samples", {
             "block": answer["block"], "time": self._origin + answer["time"],
             "sample_rate": form["sample_rate"], "carrier": form.get("carrier", 0.0),
@@ -307,32 +344,59 @@ class Sonar:
             fresh, self._fresh = self._fresh, {"platform": False, "phones": False}
             platform, phones = dict(self._platform), self._phones
             changes, self._changes = self._changes, {}
+        if self.listening:
+            # told a little ahead, so that what it changes has not sounded yet
+            t += max(self.settings.block, 0.5 * self.settings.update)
+            if t - self._place_time < 0.5 * self.settings.update:
+                with self._lock:
+                    for what in fresh:
+                        self._fresh[what] |= fresh[what]
+                for name, change in changes.items():
+                    self._put_back(name, change)
+                return self._known_place
         ahead, self._place_time = t - self._place_time, t
+        self._step = ahead
         self._place = [self._place[0] + self._velocity[0] * ahead,
                        self._place[1] + self._velocity[1] * ahead, self._place[2]]
-        good = True
         if fresh["platform"]:
-            good = self._tell("NAV", t, platform=self._platform_fields(platform, t))
-            if not good:
+            before = list(self._place), self._velocity
+            change = {"platform": self._platform_fields(platform, t)}
+            if self.settings.array_follows_heading and "heading_deg" in platform and phones is None:
+                change["array"] = self._one("array", {"heading_deg": platform["heading_deg"][0]})
+            told = self._tell("NAV", t, **change)
+            if told is not None:
+                self._known_place = told
+            if not told:  # pings must not go from elsewhere
+                self._place, self._velocity = before
+            if told is None:
                 with self._lock:
-                    self._fresh["platform"] = True  # the next ping must not go from elsewhere
-        if fresh["phones"]:
-            self._tell("the array", t, array=self._phone_fields(*phones))
-        elif fresh["platform"] and self.settings.array_follows_heading and \
-                "heading_deg" in platform and phones is None:
-            self._tell("the array", t, array=self._one("array", {
-                "heading_deg": platform["heading_deg"][0]}))
+                    self._fresh["platform"] = True
+        if fresh["phones"] and self._tell("the array", t, array=self._phone_fields(*phones)) is None:
+            with self._lock:
+                self._fresh["phones"] = True
         for name, change in changes.items():
             self._update_target(name, change, t)
-        return good
+        return self._known_place
+
+    def _put_back(self, name, change):
+        """A target's change for later, before what came since."""
+        with self._lock:
+            self._changes[name] = {**change, **self._changes.get(name, {})}
 
     def _tell(self, what, t, **change):
+        """→ whether it was taken; None: it came too late, since commands before took long"""
         try:
-            if self.settings.pace == "fast":
+            if self.settings.pace == "fast" or self.listening:
                 change["time"] = t
-            self._link.call("update", **change)
+            answer, _ = self._link.call("update", **change)
+            if self._twin is not None:
+                self._twin.update(answer["time"], change)
+            elif not self.listening and self._wants_to_listen():
+                self._told.append((answer["time"], change))
             return True
         except Refused as no:
+            if self.listening and str(no).startswith("value: time:"):
+                return None
             self.error(f"{what}: {no}")
             return False
 
@@ -344,7 +408,7 @@ class Sonar:
 
     def _platform_fields(self, known, t):
         """The place now, by the latest fix and how it moves."""
-        place, velocity = self._place, self._velocity
+        place, velocity = list(self._place), self._velocity
         fields = {}
         if "speed" in known or "heading_deg" in known:
             speed = known.get("speed", (math.hypot(*velocity), 0))[0]
@@ -358,9 +422,28 @@ class Sonar:
             if name in known:
                 value, stamp = known[name]
                 place[k] = value + (velocity[k] * (t - self._since(stamp)) if k < 2 else 0.0)
-        self._velocity = velocity
+        place, late = self._slewed(self._place, place)
+        if late:
+            self._warn("the vehicle is not where it was going while it listens: it goes there at "
+                       f"{SLEW:g} m/s")
+            with self._lock:
+                self._fresh["platform"] = True
+        self._place, self._velocity = place, velocity
         fields["position"] = list(place)
         return self._one("platform", fields)
+
+    def _slewed(self, expected, wanted):
+        """While listening nothing jumps: → the place on the way from where it was going to where it
+        is said to be, and whether that is not reached.
+        """
+        if not self.listening:
+            return wanted, False
+        off = np.subtract(wanted, expected)
+        reach = SLEW * min(self._step, max(self.settings.block, 0.5 * self.settings.update))
+        distance = float(np.linalg.norm(off))
+        if distance <= reach:
+            return wanted, False
+        return [float(e + o * reach / distance) for e, o in zip(expected, off)], True
 
     def _since(self, stamp):
         return stamp - self._origin
@@ -401,13 +484,24 @@ class Sonar:
         if "x" in change:
             east, north = self._velocity_of(whole)
             ahead = t - self._since(change["time"])
-            whole |= {"x": change["x"] + east * ahead, "y": change["y"] + north * ahead}
-            fields["position"] = [whole["x"], whole["y"], change["depth"]]
+            place = [change["x"] + east * ahead, change["y"] + north * ahead, change["depth"]]
+            if "x" in known:
+                place, late = self._slewed([known["x"], known["y"], known["depth"]], place)
+                if late:
+                    self._warn(f"{where}: it is not where it was going while it is listened to: it "
+                               f"goes there at {SLEW:g} m/s")
+                    self._put_back(name, {**change, "before": {}})
+            whole |= dict(zip(("x", "y", "depth"), place))
+            fields["position"] = place
         whole["time"] = self._origin + t
-        if self._tell(where, t, targets=[fields]):
+        told = self._tell(where, t, targets=[fields])
+        if told:
             self._known_targets.add(name)
             with self._lock:
                 self._targets[name] = whole
+            return
+        if told is None:
+            self._put_back(name, change)
             return
         if known:
             with self._lock:
@@ -456,12 +550,61 @@ class Sonar:
         for line in answer.get("warnings", []):
             self._warn(line)
         taken = {"ping": number, "latency": answer["latency"], "behind": answer.get("behind", 0.0)}
+        if self._twin is not None:
+            self._await_record(fields, answer, taken)
+            return
         end = at
-        if answer.get("samples", {}).get("shape") and self.settings.delivery != "none":
+        if answer.get("samples", {}).get("shape") and not self.listening and \
+                self.settings.delivery != "none":
             end = self._deliver(ping, number, at)
         if answer.get("file") and self._files_here:
-            taken["receiver"] = self._receive(answer["file"], number, at, end)
+            taken["receiver"] = self._receive(answer["file"], number, at, end, self._place,
+                                              self._velocity)
         self._hold(end, "latency", taken)  # the last of the ping
+
+    def _await_record(self, fields, answer, taken):
+        """While listening: the ping's record is cut out of the stream when all of it was heard."""
+        try:
+            file = self._twin.ping(answer["time"], fields)
+        except (Refused, OSError) as error:
+            self.error(f"the receiver has nothing of ping {answer['ping']}: {error}")
+            self._emit("latency", taken)
+            return
+        what = file["samples"]
+        start = answer["time"] + what["start"]
+        end = start + what["shape"][1] / self._format["sample_rate"]
+        with self._due:
+            self._pending.append({"start": start, "end": end, "count": what["shape"][1],
+                                  "file": file, "time": answer["time"], "taken": taken,
+                                  "place": list(self._place), "velocity": self._velocity})
+            self._due.notify_all()
+
+    def _cut_records(self):
+        """Records that are complete → files, detections, tracks."""
+        while not self._stop.is_set():
+            with self._due:
+                job = next((j for j in self._pending
+                            if j["end"] <= self._heard_of.end + 1e-6), None)
+                if job is None:
+                    self._due.wait(0.5)
+                    continue
+                self._pending.remove(job)
+                data = self._heard_of.cut(job["start"], job["count"])
+            taken, file = job["taken"], job["file"]
+            at, end = self._origin + job["time"], self._origin + job["end"]
+            if data is None:
+                self.error(f"the record of ping {taken['ping']} is not whole: too much was heard "
+                           "since")
+            else:
+                try:
+                    stream.put_samples(file["file"], file["index"], data)
+                    _, replica, _ = self._of_file(file)
+                    self._save(data, replica, file, taken["ping"], at, end)
+                    taken["receiver"] = self._receive(file["file"], taken["ping"], at, end,
+                                                      job["place"], job["velocity"])
+                except (ValueError, OSError, ImportError) as error:
+                    self.error(f"the receiver has nothing of ping {taken['ping']}: {error}")
+            self._hold(end, "latency", taken)
 
     _warned = ()
 
@@ -509,6 +652,12 @@ class Sonar:
                 "carrier": what.get("carrier", 0.0), "data": block, "phones": phones,
                 **self._geometry()})
         end = at + start + count / rate
+        self._save(data, replica, ping.answer, number, at, end)
+        return end
+
+    def _save(self, data, replica, answer, number, at, end):
+        """The record and the pulse as files, due at `end`."""
+        what = answer["samples"]
         folder = Path(self.settings.folder)
         try:
             folder.mkdir(parents=True, exist_ok=True)
@@ -519,13 +668,13 @@ class Sonar:
                 np.save(names[1], replica)
         except OSError as error:
             self.error(f"{folder}: {error.strerror}")
-            return end
-        self._keep([*names, *([Path(ping.answer["file"])] if "file" in ping.answer else [])])
+            return
+        self._keep([*names, *([Path(answer["file"])] if "file" in answer else [])])
         self._hold(end, "files", {"ping": number, "data": str(names[0]),
                                   "replica": str(names[1]) if replica is not None else None,
-                                  "sample_rate": rate, "carrier": what.get("carrier", 0.0),
-                                  "start": at + start})
-        return end
+                                  "sample_rate": what["sample_rate"],
+                                  "carrier": what.get("carrier", 0.0),
+                                  "start": at + what["start"]})
 
     def _of_file(self, answer):
         """Samples, pulse and places of a ping file. → [phones × samples], [samples], [phones ×
@@ -554,7 +703,7 @@ class Sonar:
             for name in self._files.pop(0):
                 name.unlink(missing_ok=True)
 
-    def _receive(self, path, number, at, end):
+    def _receive(self, path, number, at, end, place, velocity):
         """Detections and tracks, due when the record ends. → seconds it took"""
         begun = time.monotonic()
         try:
@@ -566,13 +715,14 @@ class Sonar:
             return None
         self._hold(end, "detections", {"ping": number, "of": count, "ping_time": at, "time": end,
                                        "detections": found})
-        tracks = self._tracker.update(at, found, self._place[:2], self._velocity)
+        tracks = self._tracker.update(at, found, place[:2], velocity)
         self._hold(end, "tracks", {"ping": number, "time": end,
-                                   "tracks": [self._track_fields(track) for track in tracks]})
+                                   "tracks": [self._track_fields(t, place) for t in tracks]})
         return time.monotonic() - begun
 
-    def _track_fields(self, track):
-        away = track.state[:2] - np.asarray(self._place[:2])
+    @staticmethod
+    def _track_fields(track, place):
+        away = track.state[:2] - np.asarray(place[:2])
         x, y, vx, vy = map(float, track.state)
         return {"track": track.number, "time": track.time, "x": x, "y": y, "vx": vx, "vy": vy,
                 "speed": math.hypot(vx, vy), "heading_deg": math.degrees(math.atan2(vx, vy)) % 360,

@@ -21,7 +21,7 @@ import numpy as np
 
 ROOT = Path(__file__).resolve().parents[3]
 sys.path[:0] = [str(ROOT / "python"), str(ROOT / "tests/support")]
-from asdic_client import Client  # noqa: E402
+from asdic_client import Client, Refused  # noqa: E402
 from moosdb import SmallMoosDB, packet  # noqa: E402
 
 ASDIC = str(Path(os.environ["ASDIC"]).resolve())
@@ -423,6 +423,56 @@ def test_listening():
                 check(data.shape == (2, 5) and (data == k).all(), "their samples")
                 check(abs(head["time"] - blocks[0][0]["time"] - 0.05 * k) < 1e-5, "their times")
             check("ping" not in blocks[0][0], "a stream's block belongs to no ping")
+
+
+def knows_listen(folder):
+    with Client.start(Path(folder) / "sea.toml", "--pace", "4", program=ASDIC) as server:
+        try:
+            server.command("listen", block=0.5)
+        except Refused as no:
+            check(no.code == "command", f"{no}")
+            return False
+        return True
+
+
+def test_heard_records():
+    """The receiver while it listens: the record of a ping is what the stream's blocks have from the ping on,
+    bit for bit, and the echo is found in it. The vehicle moves on meanwhile.
+    """
+    with tempfile.TemporaryDirectory() as folder, SmallMoosDB(warp=4) as db:
+        (Path(folder) / "sea.toml").write_text(SCENARIO)
+        if not knows_listen(folder):
+            print("this asdic serve does not listen: left out")
+            return
+        with app(db, folder, "Scenario = sea.toml\nDelivery = listen\nBlock = 0.25"):
+            db.post("SIM_TARGET", "name=rock,x=2500,y=0,depth=400,speed=0,heading=0,strength=30")
+            begun = db.now()
+            move(db, 0.0)
+            db.wait("ACTIVE_SONAR_SAMPLES")
+            db.post("ACTIVE_SONAR_COMMAND", "level=220")
+            while not db.of("ACTIVE_SONAR_LATENCY"):
+                move(db, 2.0 * (db.now() - begun))
+                time.sleep(0.1)
+                check(db.now() - begun < 200, "the ping is done")
+            sent = fields(db.of("ACTIVE_SONAR_PING")[0])
+            blocks = [samples_of(m) for m in db.of("ACTIVE_SONAR_SAMPLES")]
+            numbers = [head["block"] for head, _ in blocks]
+            check(numbers == list(range(numbers[0], numbers[0] + len(numbers))), "no block is missing")
+            heard = np.concatenate([data for _, data in blocks], axis=1)
+            rate = blocks[0][0]["sample_rate"]
+            record = np.load(db.of("ACTIVE_SONAR_DATA_FILE")[0]["text"])
+            first = round((float(sent["time"]) - blocks[0][0]["time"]) * rate)
+            check(record.tobytes() == heard[:, first:first + record.shape[1]].tobytes(), "its bits")
+            truth = float(fields(db.of("ACTIVE_SONAR_TRUTH")[0])["echo_time"])
+            found = [float(fields(m)["time"]) for m in db.of("ACTIVE_SONAR_DETECTION")]
+            check(min(abs(t - truth) for t in found) < 0.06, f"the echo at {truth} s is found: {found}")
+            wrong = [m["text"] for m in db.of("ACTIVE_SONAR_ERROR") if "warning" not in m["text"]]
+            check(not wrong, f"{wrong}")
+
+
+def move(db, y):
+    for name, value in (("X", 0.0), ("Y", y), ("DEPTH", 200.0), ("HEADING", 0.0), ("SPEED", 2.0)):
+        db.post("NAV_" + name, value)
 
 
 def main():
