@@ -12,9 +12,20 @@ class PathsError(Exception):
     """What the program said."""
 
 
-def words_of(asked, scenario, own_depth=None):
+def settings_in(arguments):
+    """The `--set KEY=VALUE` among a server's arguments: its sea is the request's, too."""
+    words = []
+    for k, word in enumerate(arguments):
+        if word == "--set" and k + 1 < len(arguments):
+            words.append("--set=" + arguments[k + 1])
+        elif word.startswith("--set="):
+            words.append(word)
+    return words
+
+
+def words_of(asked, scenario, own_depth=None, arguments=()):
     """The command's words. Numbers were checked, so no word of a request can be an option."""
-    words = [asked["output"], str(scenario), "--json"]
+    words = [asked["output"], str(scenario), "--json", *settings_in(arguments)]
     options = {"arrivals": ("frequency", "receiver_depth", "range", "bearing_deg", "source_depth"),
                "rays": ("from_deg", "to_deg", "count", "range", "bearing_deg", "source_depth")}
     spelt = {"bearing_deg": "bearing", "from_deg": "from", "to_deg": "to"}
@@ -33,13 +44,14 @@ def words_of(asked, scenario, own_depth=None):
     return words
 
 
-def answer(program, asked, scenario, own_depth=None):
-    """→ dict: what the program prints as JSON (docs/formats/arrivals.md, rays.md), and `id`.
-    \\throws PathsError
+def answer(program, asked, scenario, own_depth=None, arguments=()):
+    """arguments: of the server. → dict: what the program prints as JSON (docs/formats/arrivals.md,
+    rays.md), and `id`. \\throws PathsError
     """
     try:
-        done = subprocess.run([program, *words_of(asked, scenario, own_depth)], capture_output=True,
-                              text=True, timeout=TIME_LIMIT, stdin=subprocess.DEVNULL)
+        done = subprocess.run([program, *words_of(asked, scenario, own_depth, arguments)],
+                              capture_output=True, text=True, timeout=TIME_LIMIT,
+                              stdin=subprocess.DEVNULL)
     except subprocess.TimeoutExpired:
         raise PathsError(f"not done after {TIME_LIMIT} s") from None
     if done.returncode != 0:

@@ -29,7 +29,7 @@ MOST_HELD_BYTES = 512 << 20  # of samples that are not due
 ERRORS_PER_SECOND = 20
 TRUTH = ("present", "paths", "echo_time", "echo_level_db", "echo_peak_db", "reverberation_db",
          "noise_db", "echo_to_background_db")  # of a target, in a ping's answer
-SLEW = 10.0                  # while listening a place that was told wrongly is gone to so fast [m/s]
+SLEW = 10.0                  # to a place off the way that was told, while listening [m/s]
 MOST_SKEW = 10.0             # of a stamp against the clock [s]; beyond it counts as now
 
 
@@ -371,7 +371,8 @@ class Sonar:
             if told is None:
                 with self._lock:
                     self._fresh["platform"] = True
-        if fresh["phones"] and self._tell("the array", t, array=self._phone_fields(*phones)) is None:
+        if fresh["phones"] and \
+                self._tell("the array", t, array=self._phone_fields(*phones)) is None:
             with self._lock:
                 self._fresh["phones"] = True
         for name, change in changes.items():
@@ -745,7 +746,8 @@ class Sonar:
             try:
                 if not self.settings.scenario:
                     raise paths.PathsError("found no scenario in the settings, expected one")
-                found = paths.answer(self.settings.program, asked, self.settings.scenario, depth)
+                found = paths.answer(self.settings.program, asked, self.settings.scenario, depth,
+                                     self.settings.arguments)
             except (paths.PathsError, OSError) as error:
                 self.error(f"{where}: {error}")
                 found = {"ok": False, **ident, "message": str(error)}

@@ -105,7 +105,7 @@ def test_bits():
     phones = [[100.0, 50.0, 250.0], [101.0, 50.0, 250.0], [102.0, 51.0, 251.0]]
     with tempfile.TemporaryDirectory() as folder, SmallMoosDB() as db, \
             app(db, folder, "Scenario = sea.toml\nPace = fast\nBlock = 0.7\nNAV_X = MY_X\nFilesKept = 1\n"
-                            "ACTIVE_SONAR_PING = MY_PING"):
+                            "ACTIVE_SONAR_PING = MY_PING\nArguments = --set 'title=\"a sea\"'"):
         for name, value in (("MY_X", 100.0), ("NAV_Y", "50"), ("NAV_DEPTH", 240.0), ("NAV_HEADING", 90.0),
                             ("NAV_SPEED", 0.0), ("NAV_X", -77.0)):
             db.post(name, value)
@@ -170,10 +170,12 @@ def check_paths(db, folder):
         db.post("BELLHOP_REQUEST", json.dumps(request))
         got = db.wait("BELLHOP_RESPONSE", lambda m: json.loads(m["text"])["id"] == request["id"])
         got = json.loads(got["text"])
-        told = subprocess.run([ASDIC, words[0], Path(folder) / "sea.toml", *words[1:], "--json"],
+        told = subprocess.run([ASDIC, words[0], Path(folder) / "sea.toml", *words[1:], "--json",
+                               "--set", 'title="a sea"'],
                               capture_output=True, check=True, text=True)
         wanted = json.loads(told.stdout)
         wanted.pop("scenario", None)
+        check(got["title"] == "a sea", "the settings of the server hold")
         check(got["ok"] and {k: v for k, v in got.items() if k in wanted} == wanted, f"{request}")
 
 
