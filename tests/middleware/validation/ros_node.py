@@ -185,7 +185,7 @@ def compare(folder, ears, phones, messages):
 
 def main():
     try:
-        import nav_msgs  # noqa: F401
+        import nav_msgs.msg  # noqa: F401
         import rospy  # noqa: F401
     except ImportError:
         print(f"skipped: no ROS 1 here (Debian: {PACKAGES})")
