@@ -113,7 +113,7 @@ void Listening::scheduled_until(double time) {
 bool Listening::is_prepared() const {
   const double end = next_end();
   const std::lock_guard lock(mutex_);
-  return !blocks_.scheduled || scheduled_until_ >= end;
+  return stream_.time_of(sounded_until_) >= end && (!blocks_.scheduled || scheduled_until_ >= end);
 }
 
 std::optional<Listening::Block> Listening::next() {
@@ -139,6 +139,12 @@ const Listening::Change& Listening::change_at(double time) const {
   const auto after = std::upper_bound(changes_.begin() + 1, changes_.end(), time,
                                       [](double t, const Change& one) { return t < one.time; });
   return *std::prev(after);
+}
+
+/// The scenario by which a ping is received at a time, but for what was struck before.
+LiveScenario::Changes Listening::composed_for(const Sent& ping, double time) const {
+  const LiveScenario::Changes& now = change_at(time).changes;
+  return composed(change_at(ping.sent.time).changes, now, now, ping.own);
 }
 
 /// By which scenarios a ping is received from a sample on.
@@ -190,28 +196,70 @@ PingRecord Listening::send(SessionState& session, int number, const Transmission
   PingRecord record = simulator->sound(number, sent);
   const std::int64_t first = stream_.nearest_sample(sent.time),
                      end = first + static_cast<std::int64_t>(record.recording.samples);
-  std::vector<Part> parts;  // of changes that are known beforehand
-  for (Window& window : windows(ping, first, end))
-    if (window.changes != as_sent) parts.push_back(part_of(session, ping, std::move(window)));
-  const std::lock_guard lock(mutex_);
-  stream_.add(record, sent, simulator->pulse(sent.transmitter).duration());
-  for (const Part& part : parts)
-    stream_.replace(number, part.sound, part.window.from, part.window.to);
+  for (Window& window : windows(ping, first, end))  // of changes that are known beforehand
+    if (window.changes != as_sent) ping.pending.push_back(std::move(window));
+  {
+    const std::lock_guard lock(mutex_);
+    stream_.add(record, sent, simulator->pulse(sent.transmitter).duration());
+  }
   sent_.push_back(std::move(ping));
+  see_to_pending();
   return record;
 }
 
-Listening::Part Listening::part_of(SessionState& session, const Sent& ping, Window window) const {
-  const auto simulator = session.simulator_of(session.live.of(window.changes));
-  check_places(simulator->scenario(), ping.ping, ping.sent.transmitter, ping.sent.time);
-  PingRecord sound = simulator->sound(ping.ping, ping.sent);
-  return {.ping = ping.ping, .window = std::move(window), .sound = std::move(sound)};
+/// The same in steps of a second, two, four, … from a sample on: of what is changed again before
+/// long, the rest is never made. They depend on nothing but the change.
+std::vector<Listening::Window> Listening::steps(const std::vector<Window>& windows,
+                                                std::int64_t from) const {
+  std::vector<Window> all;
+  for (const Window& window : windows) {
+    std::int64_t begin = window.from;
+    for (double seconds = 1.0; begin < window.to; seconds *= 2.0) {
+      const std::int64_t until = from + std::llround((2.0 * seconds - 1.0) * rate_);
+      if (until <= begin) continue;
+      all.push_back({.from = begin, .to = std::min(window.to, until), .changes = window.changes});
+      begin = all.back().to;
+    }
+  }
+  return all;
+}
+
+/// How far everything sounds as it should.
+void Listening::see_to_pending() {
+  const std::lock_guard lock(mutex_);
+  sounded_until_ = std::numeric_limits<std::int64_t>::max();
+  for (const Sent& one : sent_)
+    if (!one.pending.empty()) sounded_until_ = std::min(sounded_until_, one.pending.front().from);
+}
+
+bool Listening::lacks(double until) const {
+  const std::lock_guard lock(mutex_);
+  return stream_.time_of(sounded_until_) < until;
+}
+
+void Listening::prepare(SessionState& session, double until) {
+  for (Sent& ping : sent_)
+    while (!ping.pending.empty() && stream_.time_of(ping.pending.front().from) < until) {
+      const Window& window = ping.pending.front();
+      const auto simulator = session.simulator_of(session.live.of(window.changes));
+      const std::int64_t first = stream_.nearest_sample(ping.sent.time);
+      const PingRecord sound =
+          simulator->sound(ping.ping, ping.sent, {},
+                           {.from = static_cast<double>(window.from - first) / rate_,
+                            .to = static_cast<double>(window.to - first) / rate_});
+      {
+        const std::lock_guard lock(mutex_);
+        stream_.replace(ping.ping, sound, std::max(window.from, stream_.position()), window.to);
+      }
+      ping.pending.erase(ping.pending.begin());
+    }
+  see_to_pending();
 }
 
 void Listening::change(SessionState& session, double time, bool strikes) {
   forget();
+  const std::vector<Sent> before = sent_;
   changes_.push_back({.time = time, .changes = session.live.state().changes, .strikes = strikes});
-  std::vector<Part> parts;
   std::shared_ptr<const PingSimulator> around;
   const std::int64_t from = stream_.sample_at(time);
   try {
@@ -220,16 +268,22 @@ void Listening::change(SessionState& session, double time, bool strikes) {
       if (one.end <= from) continue;
       const auto ping = std::find_if(sent_.begin(), sent_.end(),
                                      [&](const Sent& sent) { return sent.ping == one.ping; });
-      for (Window& window : windows(*ping, std::max(from, one.first), one.end))
-        parts.push_back(part_of(session, *ping, std::move(window)));
+      check_places(session.live.of(composed_for(*ping, time)).scenario, one.ping,
+                   one.sent.transmitter, one.sent.time);
+      std::erase_if(ping->pending, [&](const Window& window) { return window.from >= from; });
+      if (!ping->pending.empty()) ping->pending.back().to = std::min(ping->pending.back().to, from);
+      for (Window& step :
+           steps(windows(*ping, std::max(from, one.first), one.end), std::max(from, one.first)))
+        ping->pending.push_back(std::move(step));
     }
+    prepare(session, std::nextafter(time, time + 1.0));  // what is heard next, or it is refused
   } catch (...) {
     changes_.pop_back();
+    sent_ = before;
+    see_to_pending();
     throw;
   }
   const std::lock_guard lock(mutex_);
-  for (const Part& part : parts)
-    stream_.replace(part.ping, part.sound, part.window.from, part.window.to);
   stream_.surround(around, from);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -68,6 +69,10 @@ class Listening {
   /// whether targets or the sea are of another kind, and not only elsewhere \throws InputError, and
   /// then nothing has changed
   void change(SessionState& session, double time, bool strikes);
+  /// Makes what is heard up to a time, where changes have not been followed so far. \throws
+  /// InputError
+  void prepare(SessionState& session, double until);
+  [[nodiscard]] bool lacks(double until) const;  ///< whether that has something to do
   /// Before that nothing that still sounds was sent or struck [s].
   [[nodiscard]] double oldest() const;
 
@@ -77,23 +82,22 @@ class Listening {
     LiveScenario::Changes changes;
     bool strikes = false;
   };
-  /// A ping that sounds: how it was sent.
-  struct Sent {
-    int ping = 1;
-    Transmission sent;
-    LiveScenario::Changes own;  // sections that are its own
-  };
   /// By which scenario a ping is received, up to a sample.
   struct Window {
     std::int64_t from = 0, to = 0;
     LiveScenario::Changes changes;
   };
-  struct Part {
+  /// A ping that sounds: how it was sent.
+  struct Sent {
     int ping = 1;
-    Window window;
-    PingRecord sound;
+    Transmission sent;
+    LiveScenario::Changes own;         // sections that are its own
+    std::vector<Window> pending = {};  // that it does not sound by so far
   };
-  [[nodiscard]] Part part_of(SessionState& session, const Sent& ping, Window window) const;
+  [[nodiscard]] LiveScenario::Changes composed_for(const Sent& ping, double time) const;
+  void see_to_pending();
+  [[nodiscard]] std::vector<Window> steps(const std::vector<Window>& windows,
+                                          std::int64_t from) const;
   [[nodiscard]] std::vector<LiveStream::Sounding> sounding() const;
   [[nodiscard]] const Change& change_at(double time) const;
   [[nodiscard]] std::vector<Window> windows(const Sent& ping, std::int64_t from,
@@ -107,6 +111,7 @@ class Listening {
   bool active_ = false;
   std::int64_t number_ = 0;
   double scheduled_until_ = 0.0;
+  std::int64_t sounded_until_ = std::numeric_limits<std::int64_t>::max();
   // Of the thread that carries out commands alone:
   std::vector<Change> changes_;  // at least one, by their times
   std::vector<Sent> sent_;

@@ -133,38 +133,47 @@ void SessionWorker::carry_out(Session& session, const Command& command, bool& la
   turn_.unlock();
 }
 
-/// The next one; while a schedule is heard its pings are seen to.
+/// The next one; while somebody listens by the clock, what is heard before long is made meanwhile.
 std::optional<Command> SessionWorker::next_command(Session& session) {
   for (;;) {
     const auto& listening = session.state().listening;
-    const auto blocks = listening ? listening->blocks() : std::nullopt;
-    if (!blocks || !blocks->scheduled || !engine_.settings.pace.by_the_clock()) return queue_.pop();
-    send_scheduled(session);
+    if (!listening || !listening->blocks() || !engine_.settings.pace.by_the_clock())
+      return queue_.pop();
+    make_ahead(session);
     if (auto command = queue_.pop_within(std::chrono::milliseconds(20))) return command;
     if (queue_.over()) return std::nullopt;
   }
 }
 
-/// Those that leave before long: their sound is made before it is heard.
-void SessionWorker::send_scheduled(Session& session) {
+/// Pings of the schedule, and what changes have made of those that sound.
+void SessionWorker::make_ahead(Session& session) {
   SessionState& state = session.state();
-  const double ahead = state.live.state().scenario.pings.interval;
+  Listening& listening = *state.listening;
+  const auto blocks = listening.blocks();
+  if (!blocks) return;
+  const double heard = listening.time(),
+               block = static_cast<double>(blocks->samples) / listening.rate();
+  const double soon = heard + std::max(1.0, 4.0 * block);
+  const double ahead = heard + state.live.state().scenario.pings.interval + block;
+  const bool schedule =
+      blocks->scheduled &&
+      (!listening.is_prepared() || state.schedule.next(state.live.state().scenario).time < ahead);
+  if (!schedule && !listening.lacks(soon)) return;
   turn_ = std::unique_lock(engine_.busy);
   try {
-    const auto refused = [&] {
-      std::optional<Answer> answer;
-      until_stopped(call_off_.get_token(), [&] {
-        answer = session.finish(
-            Command{}, [&] { serve::send_scheduled(state, state.listening->time() + ahead); });
+    std::optional<Answer> refused;
+    until_stopped(call_off_.get_token(), [&] {
+      refused = session.finish(Command{}, [&] {
+        listening.prepare(state, soon);
+        if (schedule) serve::send_scheduled(state, ahead);
       });
-      return answer;
-    }();
+    });
     if (refused) {
       ways_.deliver(*refused);
-      state.listening->end();
+      listening.end();
     }
   } catch (const Interrupted&) {
-    state.listening->end();
+    listening.end();
   }
   turn_.unlock();
   wake_.notify_all();

@@ -58,7 +58,7 @@ class SessionWorker {
   void serve();
   void carry_out(Session& session, const Command& command, bool& last);
   std::optional<Command> next_command(Session& session);
-  void send_scheduled(Session& session);
+  void make_ahead(Session& session);
   Answer answer_to(Session& session, const Command& command);
   bool wait(double seconds);
   bool wait_for_the_reader();

@@ -17,6 +17,7 @@ void hand_out_now(SessionState& session) {
   for (;;) {
     if (listening.blocks() && listening.blocks()->scheduled)
       send_scheduled(session, listening.next_end());
+    if (listening.blocks()) listening.prepare(session, listening.next_end());
     auto block = listening.next();
     if (!block) break;
     if (!session.tell(block_answer(std::move(*block), 0.0))) return;

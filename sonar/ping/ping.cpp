@@ -297,7 +297,8 @@ PingRecord PingSimulator::levels(int ping) const {
   return record;
 }
 
-PingRecord PingSimulator::sound(int ping, const Transmission& sent, const ChoosePart& part) const {
+PingRecord PingSimulator::sound(int ping, const Transmission& sent, const ChoosePart& part,
+                                const HeardPart& heard) const {
   Stopwatch watch;
   at_step(ping, 0.0, "paths to targets");
   paths_->memory().next_ping();
@@ -309,6 +310,11 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
   std::vector<std::vector<EchoPath>> sparse;  // [arrays]
   for (std::size_t a = 0; a < scenario_.arrays.size(); ++a)
     sparse.push_back(sparse_returns(echo_context(emission, static_cast<int>(a), record), record));
+  const double longest = 2.0 * emission.pulse.duration() + 1.0;  // of what a return sounds [s]
+  for (std::vector<EchoPath>& of_array : sparse)
+    std::erase_if(of_array, [&](const EchoPath& echo) {
+      return !heard.meets(echo.received.delay - 1.0, echo.received.delay + longest);
+    });
   if (part) {
     const SampleRange wanted = part(record);
     record.recording.start += static_cast<double>(wanted.first) / record.recording.sample_rate;
@@ -400,7 +406,7 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
                          : synthesizer.silence(phones.size(), std::move(used_before));
       const CovarianceDraw draw{.seed = scenario_.seed, .ping = static_cast<std::uint32_t>(ping)};
       if (dense != nullptr) synthesizer.add_gaussian(*dense, draw, sea);
-      if (streams != nullptr) synthesizer.add_streams(*streams, around, draw, sea);
+      if (streams != nullptr) synthesizer.add_streams(*streams, around, draw, sea, heard);
       append_channels(reverberated, std::move(sea));
     }
     record.timings.synthesis += watch.lap();

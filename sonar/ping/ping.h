@@ -62,10 +62,11 @@ class PingSimulator {
   /// From now on each ping tells its steps, from its own thread.
   void tell_steps(TellStep tell) { tell_step_ = std::move(tell); }
   /// The same before noise, blanking and the receivers: what is received of this ping alone.
-  /// Streams add these up (sonar/ping/live_stream.h).
+  /// Streams add these up (sonar/ping/live_stream.h). \param heard  part of the record that is
+  /// asked for: the rest may be anything
   [[nodiscard]] PingRecord sound(int ping) const { return sound(ping, transmission(ping)); }
-  [[nodiscard]] PingRecord sound(int ping, const Transmission& sent,
-                                 const ChoosePart& part = {}) const;
+  [[nodiscard]] PingRecord sound(int ping, const Transmission& sent, const ChoosePart& part = {},
+                                 const HeardPart& heard = {}) const;
 
   /// Samples of a stream, counted from the start of the scenario.
   struct StreamPart {

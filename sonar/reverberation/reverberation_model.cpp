@@ -64,19 +64,52 @@ std::vector<Vec3> places_of(std::span<const std::vector<Vec3>> shapes,
   return some;
 }
 
+/// A shape that stands for whatever an array becomes while a stream of pings goes on: as long as it
+/// is, in any heading, and as high. Then it receives the same streams after it has turned.
+std::vector<std::vector<Vec3>> any_heading(std::span<const Vec3> phones, double frequency) {
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& x : phones) middle += x / static_cast<double>(phones.size());
+  double wide = 0.0, high = 0.0;  // from the middle [m]
+  for (const Vec3& x : phones) {
+    wide = std::max(wide, (x - middle).norm());
+    high = std::max(high, std::abs(x.z() - middle.z()));
+  }
+  const auto next = [&](double length) {  // of a row: one that bends a little is the same
+    constexpr double finest = 4.0;        // lengths to an octave
+    const double waves = length * frequency / 1500.0;
+    if (waves < 0.01) return 0.0;
+    return length / waves * std::exp2(std::ceil(finest * std::log2(waves) - 1e-9) / finest);
+  };
+  wide = next(wide);
+  high = next(high);
+  std::vector<Vec3> cross;
+  const auto count = static_cast<int>(std::clamp<std::size_t>(phones.size(), 1, 16));
+  for (int i = 0; i < count; ++i) {
+    const double at = count == 1 ? 0.0 : 2.0 * i / (count - 1) - 1.0;
+    for (const Vec3& way : {Vec3(wide, 0.0, 0.0), Vec3(0.0, wide, 0.0), Vec3(0.0, 0.0, high)})
+      cross.emplace_back(at * way);
+  }
+  return {cross};
+}
+
 /// Who receives them.
-ReverberationStreams::Listener stream_listener(const ReverberationContext& context) {
+ReverberationStreams::Listener stream_listener(const Scenario& scenario,
+                                               const ReverberationContext& context) {
   // What an array of many shapes receives is sorted for all of them once.
   const std::vector<std::vector<Vec3>> now{{context.phones.begin(), context.phones.end()}};
-  const auto& shapes = context.geometry.array(context.array).shapes;
+  const auto& several = context.geometry.array(context.array).shapes;
   const double highest = context.pulse.centre_frequency() + 0.5 * context.pulse.bandwidth_99();
-  return {.extents = ReverberationStreams::extents_of(shapes.empty() ? now : shapes, highest),
+  const bool changes = scenario.pings.continuous;
+  const std::vector<std::vector<Vec3>> shapes = changes ? any_heading(now.front(), highest)
+                                                : several.empty() ? now
+                                                                  : several;
+  return {.extents = ReverberationStreams::extents_of(shapes, highest),
           .phones = context.phones.size(),
           .frequency = highest,
           .bandwidth = context.pulse.bandwidth_99(),
           .pulse_duration = context.pulse.duration(),
           .coherence = pulse_coherence(context.pulse),
-          .places = places_of(shapes, context.phones),
+          .places = changes ? shapes.front() : places_of(several, context.phones),
           .latest = context.latest};
 }
 
@@ -133,7 +166,7 @@ std::shared_ptr<const ReverberationStreams> ReverberationModel::streams(
     const ReverberationContext& context) const {
   if (!may_stream(scenario_, context)) return nullptr;
   const bool wherever = scenario_.reverberation.synthesis == ScattererSynthesis::streams;
-  const ReverberationStreams::Listener listener = stream_listener(context);
+  const ReverberationStreams::Listener listener = stream_listener(scenario_, context);
   std::vector<const ScatteringField*> served;
   for (std::size_t i = 0; i < fields.size(); ++i)
     if (fields[i].received_by == ReceivedBy::scatterers &&
@@ -190,7 +223,7 @@ void ReverberationModel::take_memory(const ReverberationContext& context) const 
         (wherever || !ReverberationCovariance::serves(field)))
       served.push_back(&field);
   if (!served.empty())
-    context.budget->take(ReverberationStreams::need(served, stream_listener(context)));
+    context.budget->take(ReverberationStreams::need(served, stream_listener(scenario_, context)));
 }
 
 PingReverberation ReverberationModel::ping(const ReverberationContext& context) const {

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <limits>
 #include <span>
 
 namespace asdic::detail {
@@ -15,6 +16,17 @@ struct Recording {
 
   [[nodiscard]] bool is_complex() const noexcept { return carrier > 0.0; }
   [[nodiscard]] std::size_t components() const noexcept { return is_complex() ? 2 : 1; }
+};
+
+/// What of a record is asked for [s after the ping]: the rest of it may be anything.
+struct HeardPart {
+  double from = -std::numeric_limits<double>::infinity();
+  double to = std::numeric_limits<double>::infinity();
+
+  /// Whether a sound of that time may be heard.
+  [[nodiscard]] bool meets(double begin, double end) const noexcept {
+    return end >= from && begin <= to;
+  }
 };
 
 /// The samples of one ping's record, for what adds to them.

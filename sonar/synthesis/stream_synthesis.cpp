@@ -419,7 +419,8 @@ Baseband Synthesizer::silence(const ReverberationStreams& sea, std::size_t phone
 }
 
 void Synthesizer::add_streams(const ReverberationStreams& sea, std::span<const Vec3> phones,
-                              const CovarianceDraw& draw, Baseband& baseband) const {
+                              const CovarianceDraw& draw, Baseband& baseband,
+                              const HeardPart& heard) const {
   const Plan& plan = *plan_;
   assert(phones.size() == baseband.channels && baseband.samples <= plan.length);
   const std::size_t fine = baseband.samples;
@@ -445,7 +446,14 @@ void Synthesizer::add_streams(const ReverberationStreams& sea, std::span<const V
       .pulse_duration = plan.pulse_duration};
   const FineSpectrum spectrum(pulse);
   std::vector<Piece> pieces(sea.blocks.size());
+  double aperture = 0.0;  // [s]
+  for (const Vec3& phone : phones) aperture = std::max(aperture, phone.norm() / 1000.0);
+  const double beside =  // of a block, that it sounds
+      2.0 * (static_cast<double>(grid.guard) / grid.rate + plan.pulse_duration + aperture);
   in_parallel(pieces.size(), [&](std::size_t b) {
+    if (!heard.meets(static_cast<double>(sea.blocks[b].begin) * sea.bin - beside,
+                     static_cast<double>(sea.blocks[b].end) * sea.bin + beside))
+      return;
     pieces[b] = piece_of(sea, sea.blocks[b], spectrum, grid, phones, draw);
   });
   const ComplexFft<float> coarse(length), fft(fine);

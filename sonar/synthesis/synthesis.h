@@ -104,8 +104,10 @@ class Synthesizer {
   /// Adds reverberation that is known as streams of noise, through the pulse. \param phones  [n]
   /// relative to where the streams are received, no further apart than they were made for [m]
   /// \param baseband  of as many phones, one of this synthesizer's silences, at least
+  /// \param heard  blocks of delay that are not heard are left out
   void add_streams(const ReverberationStreams& sea, std::span<const Vec3> phones,
-                   const CovarianceDraw& draw, Baseband& baseband) const;
+                   const CovarianceDraw& draw, Baseband& baseband,
+                   const HeardPart& heard = {}) const;
 
   /// The pulse has nothing further than this from its centre frequency [Hz].
   [[nodiscard]] double half_band() const noexcept;
