@@ -120,6 +120,12 @@ class Client:
     def limits(self):
         return self.command("limits")[0]["limits"]
 
+    def cancel(self, of=None):
+        """Calls off the command with an id, that send() gave, or all that were sent before. → the
+        id of this one. Its answer and those of the cancelled are had by receive().
+        """
+        return self.send("cancel") if of is None else self.send("cancel", of=of)
+
     def quit(self):
         answer, _ = self.command("quit")
         self.close()

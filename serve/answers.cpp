@@ -183,6 +183,12 @@ std::string limits_line(const std::string& id, const SessionLimits& limits) {
   return text(line);
 }
 
+std::string cancel_line(const std::string& id, std::size_t number) {
+  OrderedJson line = answer(id, true);
+  line["cancelled"] = number;
+  return text(line);
+}
+
 std::string quit_line(const std::string& id, int pings, const LatencyLog& latency) {
   OrderedJson line = answer(id, true);
   line["pings"] = pings;

@@ -32,6 +32,8 @@ struct ServedPing {
 [[nodiscard]] std::string state_line(const std::string& id, const Scenario& scenario, double now,
                                      int next, const LatencyLog& latency);
 [[nodiscard]] std::string limits_line(const std::string& id, const SessionLimits& limits);
+/// \param number  of commands that were called off
+[[nodiscard]] std::string cancel_line(const std::string& id, std::size_t number);
 [[nodiscard]] std::string quit_line(const std::string& id, int pings, const LatencyLog& latency);
 [[nodiscard]] std::string refusal_line(const std::string& id, const std::string& code,
                                        const std::string& message);

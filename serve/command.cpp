@@ -231,6 +231,13 @@ std::optional<double> number_said(const TomlValue& fields, std::string_view key)
   return std::nullopt;
 }
 
+std::optional<std::string> id_text(const TomlValue& value) {
+  if (const auto* text = std::get_if<std::string>(&value.data)) return Json(*text).dump();
+  if (const auto* number = std::get_if<std::int64_t>(&value.data)) return Json(*number).dump();
+  if (const auto* number = std::get_if<double>(&value.data)) return Json(*number).dump();
+  return std::nullopt;
+}
+
 Handshake read_handshake(std::string_view line) {
   const Refusal wrong("handshake", refusal_text("first line", "another", R"({"asdic": 1})"));
   SessionLimits strict;

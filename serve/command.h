@@ -36,6 +36,9 @@ struct Handshake {
 /// The number of a key as it stands there; none: it has none, or something else.
 [[nodiscard]] std::optional<double> number_said(const TomlValue& fields, std::string_view key);
 
+/// A value as an id, JSON; none: it is neither a number nor a text.
+[[nodiscard]] std::optional<std::string> id_text(const TomlValue& value);
+
 /// \throws Refusal ("handshake") whose message says nothing of the line
 [[nodiscard]] Handshake read_handshake(std::string_view line);
 

@@ -4,6 +4,7 @@
 #include <deque>
 #include <mutex>
 #include <optional>
+#include <vector>
 
 #include "serve/command.h"
 
@@ -29,13 +30,36 @@ class CommandQueue {
   }
 
   /// The next one; waits for it. None when the queue is closed and empty.
-  std::optional<Command> pop() {
+  /// \param taken  called with it before others see that it waits no more
+  template <class Taken>
+  std::optional<Command> pop(const Taken& taken) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return closed_ || !waiting_.empty(); });
     if (waiting_.empty()) return std::nullopt;
     Command command = std::move(waiting_.front());
     waiting_.pop_front();
+    taken(command);
     return command;
+  }
+
+  std::optional<Command> pop() {
+    return pop([](const Command&) {});
+  }
+
+  /// Takes those out that are meant.
+  template <class Meant>
+  std::vector<Command> take_out(const Meant& meant) {
+    const std::lock_guard lock(mutex_);
+    std::vector<Command> out;
+    std::deque<Command> stay;
+    for (Command& one : waiting_) {
+      if (meant(one))
+        out.push_back(std::move(one));
+      else
+        stay.push_back(std::move(one));
+    }
+    waiting_ = std::move(stay);
+    return out;
   }
 
   /// No more come; those that are there are still handed out.

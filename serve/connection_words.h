@@ -13,6 +13,9 @@ namespace asdic::detail::serve {
 
 [[nodiscard]] Answer line_too_long(const SessionLimits& limits);
 [[nodiscard]] Answer queue_full(const std::string& id, const SessionLimits& limits);
+[[nodiscard]] Answer command_cancelled(const std::string& id);
+[[nodiscard]] Answer command_too_long(const std::string& id, const SessionLimits& limits);
+[[nodiscard]] Answer client_too_long(const std::string& id, const SessionLimits& limits);
 [[nodiscard]] Answer no_place(const SessionLimits& limits);
 [[nodiscard]] Answer handshake_too_late(const SessionLimits& limits);
 [[nodiscard]] Answer idle_too_long(const SessionLimits& limits);

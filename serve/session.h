@@ -27,6 +27,8 @@ class Session {
   /// How long until a command is to be carried out [s]: a ping at a later time by the clock.
   [[nodiscard]] double wait(const Command& command) const;
   [[nodiscard]] Answer execute(const Command& command);
+  /// Whether it computes nothing to speak of: it needs no turn among others.
+  [[nodiscard]] bool is_light(const Command& command) const { return known(command).light; }
 
   [[nodiscard]] const LatencyLog& latency() const noexcept { return state_.latency; }
 

@@ -44,6 +44,9 @@ void SessionLimits::describe(Fields& field) {
   field("file_bytes", file_bytes, 1, most, "of a file that a command names");
   field("kept_bytes", kept_bytes, 1, most, "of sound paths that a session keeps for later pings");
   field("queued_pings", queued_pings, 1, most, "commands of a connection that wait");
+  field("command_seconds", command_seconds, 1, most,
+        "that a command may compute, from its turn on; then it is called off");
+  field("client_seconds", client_seconds, 1, most, "of computing of a connection in all");
   field("connections", connections, 1, most,
         "with a handshake, at a time, of the Unix socket and of TCP each");
   field("answer_bytes", answer_bytes, 1, most,

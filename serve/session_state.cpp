@@ -42,7 +42,8 @@ const PingSimulator& SessionState::simulator_of(LiveScenario::State state) {
     simulators_.splice(simulators_.begin(), simulators_, found);
   } else {
     auto made = std::make_unique<PingSimulator>(std::move(state.scenario), propagation_, budget_);
-    if (!std::exchange(judged_, true)) made->judge_paths();
+    if (!judged_) made->judge_paths();
+    judged_ = true;  // unless it was called off
     simulators_.push_front({.key = std::move(state.key), .simulator = std::move(made)});
     if (simulators_.size() > most_simulators) simulators_.pop_back();
   }

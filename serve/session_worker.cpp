@@ -4,6 +4,7 @@
 
 #include "raytrace/parallel/stop.h"
 #include "raytrace/propagation.h"
+#include "serve/connection_words.h"
 
 namespace asdic::detail::serve {
 namespace {
@@ -30,6 +31,38 @@ bool SessionWorker::offer(Command command) {
   return false;
 }
 
+// Calling off -----------------------------------------------------------------------------------
+
+void SessionWorker::call_off(Why why) {
+  if (!current_ || current_->why != Why::no) return;
+  current_->why = why;
+  current_->off.request_stop();
+  wake_.notify_all();
+}
+
+std::size_t SessionWorker::cancel(const std::optional<std::string>& id) {
+  const auto meant = [&](const std::string& one) { return !id || one == *id; };
+  const auto waiting = queue_.take_out([&](const Command& one) { return meant(one.id); });
+  for (const Command& one : waiting) {
+    ways_.deliver(command_cancelled(one.id));
+    --in_hand_;
+  }
+  if (!waiting.empty()) ways_.goes_on();
+  const std::lock_guard lock(mutex_);
+  const bool this_one = current_ && current_->why == Why::no && meant(current_->id);
+  if (this_one) call_off(Why::cancelled);
+  return waiting.size() + (this_one ? 1 : 0);
+}
+
+void SessionWorker::check_time() {
+  const SessionLimits& limits = engine_.settings.limits;
+  const std::lock_guard lock(mutex_);
+  if (!current_ || !current_->since) return;
+  const double took = engine_.clock() - *current_->since;
+  if (took > double(limits.command_seconds)) call_off(Why::too_long);
+  if (computed_.in_all() + took > double(limits.client_seconds)) call_off(Why::out_of_time);
+}
+
 void SessionWorker::stop() {
   const std::lock_guard lock(mutex_);  // so that who is about to wait sees it
   if (stopping_.exchange(true)) return;
@@ -38,19 +71,34 @@ void SessionWorker::stop() {
     std::mutex mutex;
     std::unique_lock waiting(mutex);
     std::condition_variable_any().wait_for(waiting, over, grace, [] { return false; });
-    if (!over.stop_requested()) call_off_.request_stop();
+    if (over.stop_requested()) return;
+    const std::lock_guard now(mutex_);
+    call_off(Why::closing);
   });
 }
 
-Answer SessionWorker::answer_to(Session& session, const Command& command) {
-  try {
-    Answer answer;
-    until_stopped(call_off_.get_token(), [&] { answer = session.execute(command); });
-    return answer;
-  } catch (const Interrupted&) {
-    return refusal_answer(command.id, "closing", "the server is being stopped");
+void SessionWorker::abandon() {
+  const std::lock_guard lock(mutex_);
+  stopping_ = true;
+  call_off(Why::closing);
+  wake_.notify_all();
+}
+
+Answer SessionWorker::called_off(const Command& command) {
+  const std::lock_guard lock(mutex_);
+  switch (current_->why) {
+    case Why::cancelled:
+      return command_cancelled(command.id);
+    case Why::too_long:
+      return command_too_long(command.id, engine_.settings.limits);
+    case Why::out_of_time:
+      return client_too_long(command.id, engine_.settings.limits);
+    default:
+      return refusal_answer(command.id, "closing", "the server is being stopped");
   }
 }
+
+// Carrying out ----------------------------------------------------------------------------------
 
 void SessionWorker::run() {
   try {
@@ -73,33 +121,83 @@ void SessionWorker::serve() {
   ways_.goes_on();
   bool last = false;
   while (!last) {
-    const auto command = queue_.pop();
+    const auto command = queue_.pop([this](const Command& taken) { take(taken); });
     if (!command) return;
     ways_.goes_on();
-    if (wait(session.wait(*command)) && wait_for_the_reader()) {
-      const std::lock_guard lock(engine_.busy);
-      Answer answer = answer_to(session, *command);
-      last = answer.last;
-      ways_.deliver(std::move(answer));
-    } else {
-      ways_.deliver(refusal_answer(command->id, "closing", "the server is being stopped"));
+    Answer answer = carry_out(session, *command);
+    last = answer.last;
+    {
+      const std::lock_guard lock(mutex_);
+      current_.reset();
     }
+    ways_.deliver(std::move(answer));
     --in_hand_;
   }
 }
 
-/// \return false if it is stopped before that
-bool SessionWorker::wait(double seconds) {
-  std::unique_lock lock(mutex_);
-  if (seconds > 0.0)
-    wake_.wait_for(lock, std::chrono::duration<double>(seconds), [&] { return stopping_.load(); });
-  return !stopping_;
+void SessionWorker::take(const Command& command) {
+  const std::lock_guard lock(mutex_);
+  current_.emplace().id = command.id;
 }
 
-bool SessionWorker::wait_for_the_reader() {
+Answer SessionWorker::carry_out(Session& session, const Command& command) {
+  const std::stop_token off = [&] {
+    const std::lock_guard lock(mutex_);
+    return current_->off.get_token();
+  }();
+  try {
+    if (!wait(session.wait(command), off) || !wait_for_the_reader(off)) return called_off(command);
+    if (session.is_light(command)) return session.execute(command);
+    if (computed_.in_all() >= double(engine_.settings.limits.client_seconds))
+      return client_too_long(command.id, engine_.settings.limits);
+    if (!engine_.turns.take(computed_, engine_.clock(), off)) return called_off(command);
+    return compute(session, command, off);
+  } catch (const Interrupted&) {
+    return called_off(command);
+  }
+}
+
+/// When it is its turn. \throws Interrupted
+Answer SessionWorker::compute(Session& session, const Command& command,
+                              const std::stop_token& off) {
+  struct Turn {
+    explicit Turn(SessionWorker& worker) : mine(worker), begun(worker.engine_.clock()) {
+      const std::lock_guard lock(mine.mutex_);
+      mine.current_->since = begun;
+    }
+    ~Turn() {
+      const double now = mine.engine_.clock();
+      {
+        const std::lock_guard lock(mine.mutex_);
+        mine.current_->since.reset();
+        mine.computed_.add(now - begun, now);
+      }
+      mine.engine_.turns.give_back();
+    }
+    Turn(const Turn&) = delete;
+    Turn& operator=(const Turn&) = delete;
+    SessionWorker& mine;
+    double begun;
+  };
+  const Turn turn(*this);
+  Answer answer;
+  until_stopped(off, [&] { answer = session.execute(command); });
+  return answer;
+}
+
+/// \return false if the command is called off, or the server is stopped, before that
+bool SessionWorker::wait(double seconds, const std::stop_token& off) {
   std::unique_lock lock(mutex_);
-  while (!stopping_ && ways_.behind()) wake_.wait_for(lock, std::chrono::milliseconds(100));
-  return !stopping_;
+  const auto over = [&] { return stopping_ || off.stop_requested(); };
+  if (seconds > 0.0) wake_.wait_for(lock, std::chrono::duration<double>(seconds), over);
+  return !over();
+}
+
+bool SessionWorker::wait_for_the_reader(const std::stop_token& off) {
+  std::unique_lock lock(mutex_);
+  const auto over = [&] { return stopping_ || off.stop_requested(); };
+  while (!over() && ways_.behind()) wake_.wait_for(lock, std::chrono::milliseconds(100));
+  return !over();
 }
 
 }  // namespace asdic::detail::serve

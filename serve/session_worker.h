@@ -3,11 +3,14 @@
 #include <condition_variable>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <stop_token>
+#include <string>
 #include <thread>
 
 #include "serve/command_queue.h"
 #include "serve/session.h"
+#include "serve/turns.h"
 
 namespace asdic::detail::serve {
 
@@ -15,13 +18,13 @@ namespace asdic::detail::serve {
 struct Engine {
   const SessionSettings& settings;
   std::function<double()> clock;  ///< [s], never goes back
-  std::mutex busy;                ///< one command at a time computes and writes files
+  Turns turns;                    ///< one command at a time computes and writes files
 };
 
 /// A session and the thread that carries out its commands, one after the other.
 class SessionWorker {
  public:
-  /// How it speaks to its connection; called in its thread.
+  /// How it speaks to its connection; called in its thread, `deliver` also in that of cancel().
   struct Ways {
     std::function<void(Answer)> deliver;
     std::function<void()> goes_on;  ///< the session has begun, or there is room for a command again
@@ -40,26 +43,49 @@ class SessionWorker {
   [[nodiscard]] bool has_begun() const { return begun_; }
   [[nodiscard]] bool idle() const { return in_hand_ == 0; }  ///< no command waits, or is in hand
 
+  /// Calls off the commands with an id, or all: those that wait, and the one in hand.
+  /// \return how many
+  std::size_t cancel(const std::optional<std::string>& id);
+  /// Calls off the command in hand if its time is up.
+  void check_time();
+
   void finish() { queue_.close(); }  ///< no more commands come
   /// Those that wait are refused; the one in hand is finished, or called off after a second.
   void stop();
+  /// Nobody is there any more: the command in hand is called off at once.
+  void abandon();
   void wake() { wake_.notify_all(); }  ///< the reader may have caught up
 
  private:
+  /// Why a command was called off.
+  enum class Why { no, cancelled, too_long, out_of_time, closing };
+  /// The command that is carried out, or waits to be.
+  struct InHand {
+    std::string id;
+    std::stop_source off;
+    Why why = Why::no;
+    std::optional<double> since;  ///< it computes [s]
+  };
+
   void run();
   void serve();
-  Answer answer_to(Session& session, const Command& command);
-  bool wait(double seconds);
-  bool wait_for_the_reader();
+  void take(const Command& command);
+  Answer carry_out(Session& session, const Command& command);
+  Answer compute(Session& session, const Command& command, const std::stop_token& off);
+  Answer called_off(const Command& command);
+  void call_off(Why why);  // under mutex_
+  bool wait(double seconds, const std::stop_token& off);
+  bool wait_for_the_reader(const std::stop_token& off);
 
   Engine& engine_;
   Ways ways_;
   CommandQueue queue_;
+  ComputedTime computed_;  // of this client; changed by its thread, under mutex_
   std::atomic<std::size_t> in_hand_ = 0;
   std::atomic<bool> begun_ = false, stopping_ = false;
   std::mutex mutex_;
   std::condition_variable wake_;
-  std::stop_source call_off_;
+  std::optional<InHand> current_;
   std::jthread grace_;   // calls off
   std::jthread thread_;  // last: it uses all the others
 };

@@ -2,6 +2,7 @@
 #include <array>
 #include <span>
 
+#include "serve/commands/cancel.h"
 #include "serve/commands/limits.h"
 #include "serve/commands/ping.h"
 #include "serve/commands/quit.h"
@@ -15,6 +16,7 @@ inline constexpr std::array<AnyCommand, sizeof...(C)> command_list{any_command<C
 
 /// Every command. A new one is one file and one name here.
 inline constexpr std::span<const AnyCommand> all_commands =
-    command_list<PingCommand, UpdateCommand, StateCommand, LimitsCommand, QuitCommand>;
+    command_list<PingCommand, UpdateCommand, StateCommand, LimitsCommand, CancelCommand,
+                 QuitCommand>;
 
 }  // namespace asdic::detail::serve

@@ -343,6 +343,79 @@ def ends():
         thread.join()
 
 
+HEAVY = ["--set", "reverberation.azimuths=3600", "--set", 'reverberation.synthesis="scatterers"',
+         "--set", "propagation.max_surface_bounces=6", "--set", "propagation.max_bottom_bounces=6",
+         "--set", "array.phones=64"]  # a ping takes minutes
+
+
+def good_manners():
+    """Calling off, by a command, by going and by the clock; turns."""
+    with server("--socket", "sonar.sock", "--tcp", "0", *HEAVY, listens=2,
+                ASDIC_TOKEN="0123456789abcdef") as (_, said):
+        port = int(re.search(r"127\.0\.0\.1:(\d+)", said).group(1))
+        ways = {"Unix": lambda: Client.unix("sonar.sock"),
+                "TCP": lambda: Client.tcp(port, "0123456789abcdef")}
+        light = {"time": 0.0, "noise": {"spectral_level_db": 41}}
+        took = {}
+        for name, join in ways.items():
+            gone = join()  # killed in the middle of a ping: the next one is served at once
+            gone.send("ping")
+            time.sleep(0.3)
+            other = join()
+            begin = time.monotonic()
+            gone._close[0].close()
+            gone.close()
+            other.update(**light)
+            took[name] = time.monotonic() - begin
+            check(took[name] < 10, f"a client that is gone holds up others for {took[name]} s")
+
+            # One that has ended its half waits for its answers, and is served.
+            half = join()
+            half.send("ping")
+            half.send("update", **light)
+            half._close[0].shutdown(socket.SHUT_WR)
+            time.sleep(0.7)
+            begin = time.monotonic()
+            other.send("update", **light)
+            check(other._close[0] is not None, "it waits")
+            half._close[0].settimeout(0.5)
+            with contextlib.suppress(TimeoutError):
+                check(not half._reader.readline(), "a heavy ping is done too soon")
+                raise AssertionError("one that has ended its half is not served any more")
+            half._close[0].close()
+            half.close()
+            check(other.receive()[0]["ok"], "after that the other has its turn")
+            took[name + " after its half"] = time.monotonic() - begin
+
+            sent = other.send("ping")
+            time.sleep(0.2)
+            begin = time.monotonic()
+            other.cancel(sent)
+            said = [other.receive()[0] for _ in range(2)]
+            check({a["id"]: a.get("error", {}).get("code") for a in said} ==
+                  {sent: "cancelled", sent + 1: None}, said)
+            took["cancel by " + name] = time.monotonic() - begin
+            check(took["cancel by " + name] < 5, took)
+            other.quit()
+    print("called off after", {name: round(seconds, 2) for name, seconds in took.items()}, "s")
+
+    # One that floods the server does not keep another waiting for more than a turn or so.
+    with server("--socket", "sonar.sock") as (_, _):
+        greedy, other = Client.unix("sonar.sock", when_full="wait"), Client.unix("sonar.sock")
+        count = 300
+        for _ in range(count):
+            greedy.send("ping")
+        greedy.receive()
+        for _ in range(10):
+            other.ping()
+        greedy._close[0].settimeout(0.0)
+        left = count - 1
+        with contextlib.suppress(BlockingIOError):
+            while greedy._reader.readline():
+                left -= 1
+        check(left > count // 2, f"ten pings of another waited for {count - left} of one")
+
+
 def does_not_grow(count):
     """Updates and pings, as a vehicle sends them."""
     with server("--socket", "sonar.sock", "--limit", "kept_bytes=1000000") as (process, _):
@@ -378,7 +451,7 @@ def main():
         Path("sea.toml").write_text(SCENARIO)
         pings = reference()
         for work in (lambda: by_standard_streams(pings), lambda: by_unix_socket(pings),
-                     lambda: by_tcp(pings), in_time, ends, lambda: does_not_grow(count)):
+                     lambda: by_tcp(pings), in_time, ends, good_manners, lambda: does_not_grow(count)):
             work()
         os.chdir("/")
     print("served by standard streams, Unix socket and TCP: all as asked")
