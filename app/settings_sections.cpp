@@ -10,6 +10,7 @@
 #include "serve/client_names.h"
 #include "serve/ping_request.h"
 #include "serve/session_limits.h"
+#include "serve/sound_request.h"
 
 namespace asdic::detail::app {
 namespace {
@@ -64,6 +65,8 @@ std::span<const SettingsSection> settings_sections() {
        [](std::string_view) { return serve::ping_settings(); }},
       {"serve", "update", "keys of the command update",
        [](std::string_view) { return serve::update_settings(); }},
+      {"serve", "arrivals", "keys of the command arrivals", of_struct<serve::ArrivalsRequest>},
+      {"serve", "rays", "keys of the command rays", of_struct<serve::RaysRequest>},
       {"serve", "limits", "what a client may ask for: --limit", of_struct<serve::SessionLimits>}};
   return all;
 }

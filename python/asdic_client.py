@@ -51,6 +51,8 @@ class Client:
     tell them by their `id`.
     """
 
+    _FOLLOWS = {"samples": 2, "pressure": 3, "levels": 2}  # what may follow a line, its dimensions
+
     def __init__(self, reader, writer, token=None, when_full="busy", close=()):
         self._reader, self._writer, self._close = reader, writer, close
         self._id = 0
@@ -114,6 +116,30 @@ class Client:
         """Keys: time, platform, array, targets, wind_speed, sound_speed, noise, seed, recording."""
         return self.command("update", **fields)[0]
 
+    # The propagation model by itself: what `asdic arrivals`, `rays` and `field` tell.
+
+    def arrivals(self, **fields):
+        """→ dict with legs. Keys: time, leg ("target", "array"), target (a name), frequency; or of
+        a receiver anywhere: range, receiver_depth, source_depth, bearing_deg
+        """
+        return self.command("arrivals", **fields)[0]
+
+    def rays(self, **fields):
+        """→ dict with rays. Keys: time, from_deg, to_deg, count, elevations_deg, range,
+        source_depth, bearing_deg, bounces
+        """
+        return self.command("rays", **fields)[0]
+
+    def field(self, **fields):
+        """→ dict, pressure [sources × depths × ranges] complex64. Keys: time, run (a table)"""
+        return self.command("field", **fields)
+
+    def levels(self, **fields):
+        """→ dict, [3 × intervals]: mean-square pressure [Pa²] of echo, reverberation and noise that
+        the next ping would have. Keys: those of ping, but for deliver and replica
+        """
+        return self.command("levels", **fields)
+
     def state(self):
         return self.command("state")[0]
 
@@ -154,11 +180,14 @@ class Client:
         if not line.endswith(b"\n"):
             raise ConnectionError("the server has closed the connection")
         answer = json.loads(line)
-        what = answer.get("samples", {})
-        if "bytes" not in what:
+        for name, dimensions in self._FOLLOWS.items():  # real and imaginary part: one more
+            what = answer.get(name, {})
+            if "bytes" in what:
+                break
+        else:
             return answer, None
         pulse = answer.get("replica")
-        is_complex = len(what["shape"]) == 3  # real and imaginary part
+        is_complex = len(what["shape"]) > dimensions
         samples = self._numbers(what, is_complex)
         if pulse is not None:
             pulse["values"] = self._numbers(pulse, is_complex)

@@ -1,6 +1,8 @@
 #pragma once
 #include <string>
+#include <vector>
 
+#include "io/result/field_file.h"
 #include "serve/latency.h"
 #include "serve/pace.h"
 #include "serve/session_limits.h"
@@ -31,6 +33,15 @@ struct ServedPing {
 /// \param now  time of the scenario [s]   \param next  number of the next ping
 [[nodiscard]] std::string state_line(const std::string& id, const Scenario& scenario, double now,
                                      int next, const LatencyLog& latency);
+/// What a command of asdic's tells as JSON. \param time  of the scenario [s]
+[[nodiscard]] std::string result_line(const std::string& id, double time, const std::string& json,
+                                      const std::vector<std::string>& warnings);
+/// The same of a field, whose pressure follows.
+[[nodiscard]] std::string field_line(const std::string& id, double time, const std::string& json,
+                                     const FieldData& field);
+/// Its levels follow.
+[[nodiscard]] std::string levels_line(const ServedPing& served, const PingRecord& record,
+                                      const Scenario& scenario);
 [[nodiscard]] std::string limits_line(const std::string& id, const SessionLimits& limits);
 /// \param number  of commands that were called off
 [[nodiscard]] std::string cancel_line(const std::string& id, std::size_t number);

@@ -42,7 +42,11 @@ const AnyCommand& Session::known(const Command& command) const {
 
 Answer Session::execute(const Command& command) {
   try {
-    return known(command).run(state_, command);
+    Answer answer = known(command).run(state_, command);
+    if (const std::size_t most = state_.settings.limits.answer_bytes; answer.line.size() > most)
+      throw Refusal("limit", refusal_text(std::string(command.name), "a longer answer",
+                                          "at most " + std::to_string(most) + " bytes"));
+    return answer;
   } catch (const Refusal& refusal) {
     return refusal_answer(command.id, refusal.code(), refusal.what());
   } catch (const MemoryError& error) {

@@ -38,6 +38,8 @@ void SessionLimits::describe(Fields& field) {
   field("channels", channels, 1, most, "of all arrays");
   field("targets", targets, 1, most, "of the scenario");
   field("patches", patches, 1, most, "`reverberation.most_returns` of the scenario");
+  field("rays", rays, 1, most, "of a fan (`rays`)");
+  field("receivers", receivers, 1, most, "of a field, of all its sources");
   field("memory_bytes", memory_bytes, 1, most,
         "that a ping may need, estimated before it is begun; no more than "
         "[run.memory](scenario.md#memory)");

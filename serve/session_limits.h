@@ -18,6 +18,8 @@ struct SessionLimits {
   std::size_t channels = 1024;            ///< of all arrays
   std::size_t targets = 64;               ///< of the scenario
   std::size_t patches = 4'000'000;        ///< returns of the reverberation in one ping
+  std::size_t rays = 2000;                ///< of a fan
+  std::size_t receivers = 1 << 20;        ///< of a field
   std::size_t memory_bytes = 1ULL << 32;  ///< that a ping may need
   std::size_t file_bytes = 16 << 20;      ///< of a file that a command names
   std::size_t kept_bytes = 32 << 20;      ///< of sound paths that a session keeps for later pings

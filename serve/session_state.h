@@ -55,6 +55,7 @@ class SessionState {
   [[nodiscard]] double now() const;  ///< of the scenario [s]
   /// A simulator of a scenario, or the one that was made of it not long ago.
   const PingSimulator& simulator_of(LiveScenario::State state);
+  [[nodiscard]] const MemoryBudget& budget() const noexcept { return budget_; }
   /// For the next ping: sessions write into folders of their own, which nobody had before, so
   /// nothing is overwritten.
   [[nodiscard]] std::filesystem::path next_file();

@@ -2,10 +2,14 @@
 #include <array>
 #include <span>
 
+#include "serve/commands/arrivals.h"
 #include "serve/commands/cancel.h"
+#include "serve/commands/field.h"
+#include "serve/commands/levels.h"
 #include "serve/commands/limits.h"
 #include "serve/commands/ping.h"
 #include "serve/commands/quit.h"
+#include "serve/commands/rays.h"
 #include "serve/commands/state.h"
 #include "serve/commands/update.h"
 
@@ -16,7 +20,7 @@ inline constexpr std::array<AnyCommand, sizeof...(C)> command_list{any_command<C
 
 /// Every command. A new one is one file and one name here.
 inline constexpr std::span<const AnyCommand> all_commands =
-    command_list<PingCommand, UpdateCommand, StateCommand, LimitsCommand, CancelCommand,
-                 QuitCommand>;
+    command_list<PingCommand, UpdateCommand, StateCommand, LimitsCommand, ArrivalsCommand,
+                 RaysCommand, FieldCommand, LevelsCommand, CancelCommand, QuitCommand>;
 
 }  // namespace asdic::detail::serve

@@ -416,6 +416,85 @@ def good_manners():
         check(left > count // 2, f"ten pings of another waited for {count - left} of one")
 
 
+def asked(*words):
+    """What a command of asdic's prints as JSON, without what a server does not tell."""
+    done = subprocess.run([ASDIC, *words, "--json"], capture_output=True, text=True, check=True)
+    return without(json.loads(done.stdout))
+
+
+def without(told):
+    for key in ("filetype", "scenario", "output", "id", "ok", "time", "warnings"):
+        told.pop(key, None)
+    return told
+
+
+def the_model_by_itself():
+    """Eigenrays, rays, fields and levels: the numbers of the commands of asdic's, and of a file."""
+    run = {"frequency": 500.0, "receivers": {"depth": {"first": 50.0, "last": 900.0, "count": 8},
+                                             "range": {"first": 100.0, "last": 4000.0, "count": 9}}}
+    table = ("{frequency=500.0, receivers={depth={first=50.0, last=900.0, count=8}, "
+             "range={first=100.0, last=4000.0, count=9}}}")
+    with Client.start("sea.toml", program=ASDIC) as client:
+        for ping in (1, 2):
+            told = client.arrivals()
+            check(told["time"] == 10.0 * (ping - 1), told["time"])
+            check(without(told) == asked("arrivals", "sea.toml", "--ping", str(ping)), "other paths")
+            client.ping(deliver="none")
+        check(without(client.arrivals(time=0.0, leg="array", target="rock"))["legs"] ==
+              asked("arrivals", "sea.toml", "--leg", "array")["legs"], "legs back")
+        receiver = client.arrivals(time=0.0, range=2000.0, receiver_depth=300.0, source_depth=20.0,
+                                   bearing_deg=40.0, frequency=700.0)
+        check(without(receiver)["legs"] == asked(
+            "arrivals", "sea.toml", "--range", "2000", "--receiver-depth", "300", "--source-depth",
+            "20", "--bearing", "40", "--frequency", "700")["legs"], "paths to a receiver")
+        check(without(client.rays()) == asked("rays", "sea.toml"), "other rays")
+        check(without(client.rays(from_deg=-3.3, to_deg=7.1, count=5, range=9000.0, bounces=2,
+                                  source_depth=70.0)) ==
+              asked("rays", "sea.toml", "--from", "-3.3", "--to", "7.1", "--count", "5", "--range",
+                    "9000", "--bounces", "2", "--source-depth", "70"), "another fan")
+        check(without(client.rays(elevations_deg=[1.1, -4.0]))["rays"] ==
+              asked("rays", "sea.toml", "--elevations", "1.1,-4.0")["rays"], "listed elevations")
+        answer, pressure = client.field(run=run)
+        told = asked("field", "sea.toml", "--set", f"run={table}", "-o", "field.h5")
+        check({key: answer[key] for key in told} == told, "another summary")
+        with h5py.File("field.h5") as file:
+            check(pressure.tobytes() == file["pressure"][...].tobytes(), "another field")
+            check(answer["depth"] == list(file["depth"][...]), "depths")
+
+        # A platform that goes on: from where it is.
+        client.update(time=20.0, platform={"position": [0.0, 0.0, 400.0], "velocity": [1, 0, 0]})
+        check(client.rays()["source_depth"] == 400.0, "where the platform is")
+        check(client.field(run=run)[1].tobytes() == client.field(
+            run={**run, "source": {"depth": 400.0}})[1].tobytes(), "a field from there")
+
+        for code, work in {
+                "limit": [lambda: client.rays(count=2001), lambda: client.field(run={
+                    **run, "receivers": {"depth": {"first": 1, "last": 900, "count": 2000},
+                                         "range": {"first": 1, "last": 900, "count": 2000}}})],
+                "scenario": [lambda: client.rays(source_depth=1000.5),
+                             lambda: client.arrivals(range=100.0, receiver_depth=1001.0)],
+                "value": [lambda: client.rays(from_deg=90), lambda: client.rays(to=3),
+                          lambda: client.rays(range=-1), lambda: client.arrivals(range=100.0),
+                          lambda: client.arrivals(target="x"), lambda: client.arrivals(leg="up"),
+                          lambda: client.field(run=3), lambda: client.field(runs=run),
+                          lambda: client.field(run={**run, "task": "rays"}),
+                          lambda: client.field(run={"frequency": -1.0}),
+                          lambda: client.levels(deliver="none")]}.items():
+            for one in work:
+                refused(code, one)
+        refused("scenario", client.field)  # the scenario has no run
+
+    with Client.start("sea.toml", program=ASDIC) as client:
+        for ping in range(3):
+            answer, levels = client.levels()
+            with h5py.File("reference.h5") as file:
+                for row, name in enumerate(answer["levels"]["rows"]):
+                    check(levels[row].tobytes() == file[f"levels/{name}"][ping].tobytes(), name)
+                check(answer["levels"]["time_step"] == file["levels/echo"].attrs["time_step"], answer)
+                check(answer["levels"]["time_start"] == file["levels/echo"].attrs["time_start"], answer)
+            check(client.ping(deliver="none").answer["ping"] == ping + 1, "it is not counted")
+
+
 def does_not_grow(count):
     """Updates and pings, as a vehicle sends them."""
     with server("--socket", "sonar.sock", "--limit", "kept_bytes=1000000") as (process, _):
@@ -451,7 +530,8 @@ def main():
         Path("sea.toml").write_text(SCENARIO)
         pings = reference()
         for work in (lambda: by_standard_streams(pings), lambda: by_unix_socket(pings),
-                     lambda: by_tcp(pings), in_time, ends, good_manners, lambda: does_not_grow(count)):
+                     lambda: by_tcp(pings), in_time, ends, good_manners,
+                     the_model_by_itself, lambda: does_not_grow(count)):
             work()
         os.chdir("/")
     print("served by standard streams, Unix socket and TCP: all as asked")
