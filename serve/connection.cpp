@@ -20,6 +20,8 @@ namespace {
 constexpr double linger = 1.0;       // for a client to read the last line [s]
 constexpr double last_words = 10.0;  // to take what is left when the server stops [s]
 constexpr std::size_t longest_handshake = 4096;
+constexpr std::size_t little =
+    1 << 20;  // that each may have to take when all have too much [bytes]
 
 bool is_tcp(int socket) {
   int domain = 0;
@@ -42,6 +44,7 @@ class Connection::Impl {
         out_(io, ends.out),
         timer_(io),
         splitter_(longest_handshake),
+        outbox_(engine.owed),
         active_(engine.clock()) {}
 
   void start() {
@@ -72,7 +75,10 @@ class Connection::Impl {
  private:
   // In: bytes, lines, commands ---------------------------------------------------------------
 
-  [[nodiscard]] bool behind() const { return outbox_.bytes() > limits_.answer_bytes; }
+  [[nodiscard]] bool behind() const {
+    return outbox_.bytes() > limits_.answer_bytes ||
+           (engine_.owed > limits_.total_answer_bytes && outbox_.bytes() > little);
+  }
   [[nodiscard]] bool paused() const {
     return behind() || (worker_ && (!worker_->has_begun() || (waits_ && worker_->full())));
   }
@@ -130,6 +136,13 @@ class Connection::Impl {
         SessionWorker::Ways{.deliver = [this](Answer answer) { deliver(std::move(answer)); },
                             .goes_on = [this] { asio::post(io_, [this] { process(); }); },
                             .behind = [this] { return behind(); },
+                            .reserve =
+                                [this](std::size_t bytes) {
+                                  return outbox_.reserve(bytes, limits_.answer_bytes,
+                                                         limits_.total_answer_bytes);
+                                },
+                            .release = [this](std::size_t bytes) { outbox_.release(bytes); },
+                            .waits = waits_,
                             .done = [this] { asio::post(io_, [this] { session_is_over(); }); }});
   }
 

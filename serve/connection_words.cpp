@@ -46,6 +46,12 @@ Answer client_too_long(const std::string& id, const SessionLimits& limits) {
                        " s of computing of a client in all"));
 }
 
+Refusal answers_wait(const SessionLimits& limits) {
+  return {"busy", refusal_text("total_answer_bytes", "answers that other clients have not taken",
+                               "less than " + std::to_string(limits.total_answer_bytes) +
+                                   " bytes of them: try again later")};
+}
+
 Answer no_place(const SessionLimits& limits) {
   return refusal_answer("null", "limit",
                         refusal_text("server", std::to_string(limits.connections) + " connections",

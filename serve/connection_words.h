@@ -2,6 +2,7 @@
 #include <string>
 
 #include "serve/command.h"
+#include "serve/refusal.h"
 #include "serve/session.h"
 
 // What a connection says by itself, without its session.
@@ -16,6 +17,8 @@ namespace asdic::detail::serve {
 [[nodiscard]] Answer command_cancelled(const std::string& id);
 [[nodiscard]] Answer command_too_long(const std::string& id, const SessionLimits& limits);
 [[nodiscard]] Answer client_too_long(const std::string& id, const SessionLimits& limits);
+/// Of all clients together.
+[[nodiscard]] Refusal answers_wait(const SessionLimits& limits);
 [[nodiscard]] Answer no_place(const SessionLimits& limits);
 [[nodiscard]] Answer handshake_too_late(const SessionLimits& limits);
 [[nodiscard]] Answer idle_too_long(const SessionLimits& limits);

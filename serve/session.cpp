@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <new>
 
+#include "raytrace/parallel/progress.h"
 #include "serve/answers.h"
 
 namespace asdic::detail::serve {
@@ -56,6 +57,8 @@ Answer Session::execute(const Command& command) {
     return refusal_answer(command.id, refusal.code(), refusal.what());
   } catch (const std::bad_alloc&) {
     return refusal_answer(command.id, "run", "not enough memory for this ping");
+  } catch (const Interrupted&) {  // the worker knows why
+    throw;
   } catch (const std::exception& error) {
     state_.settings.report(error.what());
     return refusal_answer(command.id, "run", "it could not be done; the server's log says why");

@@ -30,6 +30,9 @@ class Session {
   /// Whether it computes nothing to speak of: it needs no turn among others.
   [[nodiscard]] bool is_light(const Command& command) const { return known(command).light; }
 
+  /// How room is made for an answer (SessionState::make_room).
+  void makes_room(std::function<void(std::size_t bytes)> way) { state_.make_room = std::move(way); }
+
   [[nodiscard]] const LatencyLog& latency() const noexcept { return state_.latency; }
 
  private:

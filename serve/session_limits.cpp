@@ -52,8 +52,12 @@ void SessionLimits::describe(Fields& field) {
   field("connections", connections, 1, most,
         "with a handshake, at a time, of the Unix socket and of TCP each");
   field("answer_bytes", answer_bytes, 1, most,
-        "of answers that a slow reader has not taken; then its commands wait, and no more is read "
-        "from it");
+        "of an answer, and of answers that a slow reader has not taken: past it its commands wait, "
+        "and no more is read from it");
+  field("total_answer_bytes", total_answer_bytes, 1, most,
+        "of answers that readers have not taken, of all connections: past it pings with samples "
+        "are answered `busy`, or wait");
+  field("output_bytes", output_bytes, 1, most, "of files, over the server's life");
   field("handshake_seconds", handshake_seconds, 1, most, "for the first line of a socket's client");
   field("idle_seconds", idle_seconds, 1, most, "after which a silent socket is closed");
 }

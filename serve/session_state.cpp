@@ -5,6 +5,7 @@
 
 #include "io/scenario/document.h"
 #include "io/scenario/propagation.h"
+#include "raytrace/parallel/stop.h"
 
 namespace asdic::detail::serve {
 namespace {
@@ -43,6 +44,7 @@ const PingSimulator& SessionState::simulator_of(LiveScenario::State state) {
   } else {
     auto made = std::make_unique<PingSimulator>(std::move(state.scenario), propagation_, budget_);
     if (!judged_) made->judge_paths();
+    stop_point();
     judged_ = true;  // unless it was called off
     simulators_.push_front({.key = std::move(state.key), .simulator = std::move(made)});
     if (simulators_.size() > most_simulators) simulators_.pop_back();

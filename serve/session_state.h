@@ -10,6 +10,7 @@
 #include "io/ping/ping_file.h"
 #include "serve/latency.h"
 #include "serve/live_scenario.h"
+#include "serve/output_quota.h"
 #include "serve/pace.h"
 #include "serve/ping_schedule.h"
 #include "serve/session_limits.h"
@@ -26,6 +27,7 @@ struct SessionSettings {
   SessionLimits limits;
   Pace pace;
   Provenance provenance;
+  std::shared_ptr<OutputQuota> written = std::make_shared<OutputQuota>();  ///< of files
   /// Told what is not for clients: why a file could not be written.
   std::function<void(const std::string&)> report = [](const std::string&) {};
 };
@@ -35,6 +37,11 @@ struct Answer {
   std::string line;
   std::vector<float> samples = {};  ///< little-endian float32 after the line; none: nothing follows
   bool last = false;                ///< the connection is closed after it
+};
+
+/// For an answer there is no room yet: other answers have not been taken.
+struct NoRoom {
+  std::size_t bytes = 0;
 };
 
 /// What a session is in the middle of: what its commands look at, and change.
@@ -51,6 +58,9 @@ class SessionState {
   PingSchedule schedule;
   int pings = 0;  ///< done
   LatencyLog latency;
+  /// Called before what follows an answer's line is made: there is room for so many bytes.
+  /// \throws NoRoom to be asked again later; a Refusal
+  std::function<void(std::size_t bytes)> make_room = [](std::size_t) {};
 
   [[nodiscard]] double now() const;  ///< of the scenario [s]
   /// A simulator of a scenario, or the one that was made of it not long ago.

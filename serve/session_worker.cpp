@@ -116,6 +116,7 @@ void SessionWorker::run() {
 
 void SessionWorker::serve() {
   Session session(engine_.settings, engine_.clock);
+  session.makes_room([this](std::size_t bytes) { make_room(bytes); });
   ways_.deliver(session.greeting());
   begun_ = true;
   ways_.goes_on();
@@ -131,6 +132,7 @@ void SessionWorker::serve() {
       current_.reset();
     }
     ways_.deliver(std::move(answer));
+    ways_.release(std::exchange(reserved_, 0));
     --in_hand_;
   }
 }
@@ -150,8 +152,14 @@ Answer SessionWorker::carry_out(Session& session, const Command& command) {
     if (session.is_light(command)) return session.execute(command);
     if (computed_.in_all() >= double(engine_.settings.limits.client_seconds))
       return client_too_long(command.id, engine_.settings.limits);
-    if (!engine_.turns.take(computed_, engine_.clock(), off)) return called_off(command);
-    return compute(session, command, off);
+    for (;;) {
+      if (!engine_.turns.take(computed_, engine_.clock(), off)) return called_off(command);
+      try {
+        return compute(session, command, off);
+      } catch (const NoRoom&) {  // it was asked for before anything was made
+        if (!wait_for_room(off)) return called_off(command);
+      }
+    }
   } catch (const Interrupted&) {
     return called_off(command);
   }
@@ -181,8 +189,36 @@ Answer SessionWorker::compute(Session& session, const Command& command,
   };
   const Turn turn(*this);
   Answer answer;
-  until_stopped(off, [&] { answer = session.execute(command); });
+  bool done = false;
+  try {
+    until_stopped(off, [&] {
+      answer = session.execute(command);
+      done = true;
+    });
+  } catch (const Interrupted&) {
+    if (!done) throw;  // else it was called off when nothing was left to call off
+  }
   return answer;
+}
+
+bool SessionWorker::wait_for_room(const std::stop_token& off) {
+  std::unique_lock lock(mutex_);
+  const auto over = [&] { return stopping_ || off.stop_requested(); };
+  if (!over()) wake_.wait_for(lock, std::chrono::milliseconds(500));
+  return !over();
+}
+
+void SessionWorker::make_room(std::size_t bytes) {
+  switch (ways_.reserve(bytes)) {
+    case Outbox::Room::here:
+      reserved_ += bytes;
+      return;
+    case Outbox::Room::taken_by_others:
+      if (!ways_.waits) throw answers_wait(engine_.settings.limits);
+      [[fallthrough]];
+    default:
+      throw NoRoom{bytes};
+  }
 }
 
 /// \return false if the command is called off, or the server is stopped, before that

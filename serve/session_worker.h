@@ -7,8 +7,10 @@
 #include <stop_token>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "serve/command_queue.h"
+#include "serve/outbox.h"
 #include "serve/session.h"
 #include "serve/turns.h"
 
@@ -17,8 +19,9 @@ namespace asdic::detail::serve {
 /// What the connections of a server share.
 struct Engine {
   const SessionSettings& settings;
-  std::function<double()> clock;  ///< [s], never goes back
-  Turns turns;                    ///< one command at a time computes and writes files
+  std::function<double()> clock;      ///< [s], never goes back
+  Turns turns;                        ///< one command at a time computes and writes files
+  std::atomic<std::size_t> owed = 0;  ///< bytes of answers that readers have not taken
 };
 
 /// A session and the thread that carries out its commands, one after the other.
@@ -29,7 +32,11 @@ class SessionWorker {
     std::function<void(Answer)> deliver;
     std::function<void()> goes_on;  ///< the session has begun, or there is room for a command again
     std::function<bool()> behind;   ///< whether the reader is so: then nothing new is begun
-    std::function<void()> done;     ///< the last that is called
+    /// Makes room for an answer, as Outbox; gives it back.
+    std::function<Outbox::Room(std::size_t bytes)> reserve;
+    std::function<void(std::size_t bytes)> release;
+    bool waits = false;          ///< for room that others take, rather than be told "busy"
+    std::function<void()> done;  ///< the last that is called
   };
 
   SessionWorker(Engine& engine, Ways ways);
@@ -76,11 +83,14 @@ class SessionWorker {
   void call_off(Why why);  // under mutex_
   bool wait(double seconds, const std::stop_token& off);
   bool wait_for_the_reader(const std::stop_token& off);
+  bool wait_for_room(const std::stop_token& off);
+  void make_room(std::size_t bytes);
 
   Engine& engine_;
   Ways ways_;
   CommandQueue queue_;
-  ComputedTime computed_;  // of this client; changed by its thread, under mutex_
+  ComputedTime computed_;     // of this client; changed by its thread, under mutex_
+  std::size_t reserved_ = 0;  // bytes, for the answer of the command in hand; of its thread
   std::atomic<std::size_t> in_hand_ = 0;
   std::atomic<bool> begun_ = false, stopping_ = false;
   std::mutex mutex_;

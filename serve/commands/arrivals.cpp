@@ -6,6 +6,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "io/result/result_json.h"
+#include "raytrace/parallel/stop.h"
 #include "serve/answers.h"
 #include "serve/places.h"
 #include "serve/refusal.h"
@@ -87,6 +88,7 @@ Answer ArrivalsCommand::run(SessionState& session, const Command& command) {
   std::vector<std::string> warnings = scenario.notes;
   if (std::string lack = ended_early(simulator.paths().memory().ended_searches()); !lack.empty())
     warnings.push_back(std::move(lack));
+  stop_point();
   return {.line = result_line(command.id, sent.time, arrivals_json(result), warnings)};
 }
 

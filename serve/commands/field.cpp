@@ -7,6 +7,7 @@
 #include "io/result/result_json.h"
 #include "io/scenario/propagation.h"
 #include "io/text/toml_value.h"
+#include "raytrace/parallel/stop.h"
 #include "serve/answers.h"
 #include "serve/motion.h"
 #include "serve/refusal.h"
@@ -73,6 +74,12 @@ Answer FieldCommand::run(SessionState& session, const Command& command) {
     if (receivers > double(limits.receivers))
       throw Refusal("limit", refusal_text("run.receivers", to_text(receivers) + " receivers",
                                           "at most " + std::to_string(limits.receivers)));
+    const auto bytes = static_cast<std::size_t>(receivers) * 2 * sizeof(float);
+    if (bytes > limits.answer_bytes)
+      throw Refusal("limit", refusal_text("run.receivers", std::to_string(bytes) + " bytes",
+                                          "at most " + std::to_string(limits.answer_bytes) +
+                                              " bytes in an answer"));
+    session.make_room(bytes);
     PropagationResult found = detail::run(result.run_case, {}, session.budget());
     result.notes = found.notes;
     result.data = field_data(result.run_case, std::move(found));
@@ -80,6 +87,7 @@ Answer FieldCommand::run(SessionState& session, const Command& command) {
     throw refusal_of_run(told_of_scenario(error, document, session.settings.scenario.path), session,
                          command);
   }
+  stop_point();
   result.origin.title = result.run_case.title;
   result.origin.warnings = warnings;
   Answer answer{.line = field_line(command.id, time, field_json(result), result.data)};

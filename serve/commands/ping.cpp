@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/text.h"
+#include "raytrace/parallel/stop.h"
 #include "serve/answers.h"
 #include "serve/prepared_ping.h"
 #include "serve/refusal.h"
@@ -10,6 +11,12 @@
 #include "sonar/scenario/sampling.h"
 
 namespace asdic::detail::serve {
+namespace {
+
+constexpr std::size_t table_bytes = 1 << 18;  // of a file beside its samples, about
+
+}  // namespace
+
 double PingCommand::wait(const SessionState& session, const Command& command) {
   if (!session.settings.pace.by_the_clock()) return 0.0;
   const auto wanted = number_said(command.fields, "time");
@@ -26,21 +33,31 @@ Answer PingCommand::run(SessionState& session, const Command& command) {
   const Transmission& sent = ping.sent;
   ServedPing& served = ping.served;
   const Scenario& scenario = ping.simulator->scenario();
-  const double bytes = double(channels_of(scenario)) * double(recording_of(scenario).samples) * 8.0;
+  const Recording recording = recording_of(scenario);
+  const double bytes = double(channels_of(scenario)) * double(recording.samples) *
+                       double(recording.components() * sizeof(float));
   if (request.deliver == Delivery::samples && bytes > double(settings.limits.answer_bytes))
     throw Refusal("limit", refusal_text("deliver", "more samples",
                                         "at most " + std::to_string(settings.limits.answer_bytes) +
                                             " bytes in an answer"));
+  if (request.deliver == Delivery::samples) session.make_room(static_cast<std::size_t>(bytes));
+  std::optional<CountedFile> file;
+  if (request.deliver == Delivery::file) {
+    served.file = session.next_file().string();
+    file.emplace(*settings.written, settings.limits.output_bytes, served.file,
+                 static_cast<std::size_t>(bytes) + table_bytes);
+  }
   PingRecord record = ping.simulator->simulate(ping.number, sent);
+  stop_point();  // the last: what follows is done as a whole
   if (request.deliver == Delivery::file) {
     const double start = session.clock();
-    served.file = session.next_file().string();
     Scenario told = scenario;
     if (request.elevation)
       told.overrides.push_back(session.live.elevation_override(sent.transmitter, sent.elevation));
     PingFileWriter writer(served.file, told, settings.provenance);
     writer.append(record);
     writer.finish(true);
+    file->keep();
     record.timings.write = session.clock() - start;
   }
   ++session.pings;
@@ -53,6 +70,7 @@ Answer PingCommand::run(SessionState& session, const Command& command) {
   served.replica = pulse.size();
   Answer answer{.line = ping_line(served, record, scenario)};
   if (served.with_samples) answer.samples = std::move(record.pressure);
+  answer.samples.reserve(answer.samples.size() + pulse.size());  // and no more
   answer.samples.insert(answer.samples.end(), pulse.begin(), pulse.end());
   return answer;
 }

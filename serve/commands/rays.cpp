@@ -16,7 +16,7 @@
 namespace asdic::detail::serve {
 namespace {
 
-constexpr std::size_t point_bytes = 60;  // of JSON
+constexpr std::size_t point_bytes = 240;  // of memory, while JSON is made of it
 
 /// Where the plane of the rays is, as EarthLine wants it.
 PropagationCase place_of(const Scenario& scenario, const Vec3& platform, double bearing) {
@@ -82,6 +82,7 @@ Answer RaysCommand::run(SessionState& session, const Command& command) {
                                           "at most " + std::to_string(limits.answer_bytes) +
                                               " bytes in an answer"));
   }
+  stop_point();
   return {.line = result_line(command.id, time, rays_json(result), scenario.notes)};
 }
 

@@ -495,6 +495,54 @@ def the_model_by_itself():
             check(client.ping(deliver="none").answer["ping"] == ping + 1, "it is not counted")
 
 
+def slow_readers():
+    """What readers do not take is bounded, in all; and so are files."""
+    large = ["--set", "reverberation.enabled=false", "--set", "array.phones=64", "--set", "pings.recording_duration=30.0", "--limit",
+             "answer_bytes=20000000", "--limit", "total_answer_bytes=30000000"]
+    with server("--socket", "sonar.sock", *large) as (process, _):
+        with Client.unix("sonar.sock") as client:
+            ping = client.ping(deliver="samples")
+            one = ping.samples.nbytes
+            check(5e6 < one < 20e6, one)
+        before = rss(process)
+        deaf = [Client.unix("sonar.sock", when_full="wait") for _ in range(6)]
+        for client in deaf:
+            for _ in range(8):
+                client.send("ping", deliver="samples")
+        with Client.unix("sonar.sock") as other:  # told so; what needs no room is done
+            until = time.monotonic() + 30
+            code = None
+            while code != "busy" and time.monotonic() < until:
+                other.ping(deliver="none")
+                try:
+                    other.ping(deliver="samples")
+                except Refused as no:
+                    code = no.code
+            check(code == "busy", "answers of 48 pings of 8 MB are kept")
+        time.sleep(1.0)
+        after = rss(process)
+        deaf[0].receive()
+        check(after - before < 75000, f"{before} kB, then {after} kB for at most 30 MB of answers")
+        for client in deaf[1:]:
+            client.close()
+        for _ in range(7):  # then there is room again
+            check(deaf[0].receive()[1].nbytes == one, "samples")
+        deaf[0].close()
+    print(f"slow readers: {before} kB before, {after} kB with 48 pings of {one} bytes not taken")
+
+    os.mkdir("quota")
+    with Client.start("sea.toml", "--output-dir", "quota", "--limit", "output_bytes=2000000",
+                      program=ASDIC) as client:
+        files = []
+        with contextlib.suppress(Refused):
+            for _ in range(100):
+                files.append(client.ping().answer["file"])
+        refused("limit", client.ping)
+        check(client.ping(deliver="none").answer["ping"] == len(files) + 1, "it was not begun")
+    sizes = [os.path.getsize(file) for file in Path("quota").rglob("*.h5")]
+    check(len(sizes) == len(files) > 3 and sum(sizes) <= 2e6, sizes)
+
+
 def does_not_grow(count):
     """Updates and pings, as a vehicle sends them."""
     with server("--socket", "sonar.sock", "--limit", "kept_bytes=1000000") as (process, _):
@@ -531,7 +579,7 @@ def main():
         pings = reference()
         for work in (lambda: by_standard_streams(pings), lambda: by_unix_socket(pings),
                      lambda: by_tcp(pings), in_time, ends, good_manners,
-                     the_model_by_itself, lambda: does_not_grow(count)):
+                     the_model_by_itself, slow_readers, lambda: does_not_grow(count)):
             work()
         os.chdir("/")
     print("served by standard streams, Unix socket and TCP: all as asked")
