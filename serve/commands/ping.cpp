@@ -13,7 +13,7 @@
 namespace asdic::detail::serve {
 namespace {
 
-constexpr std::size_t table_bytes = 1 << 18;  // of a file beside its samples, about
+constexpr std::size_t table_bytes = 1 << 20;  // of a file beside its samples, about
 
 }  // namespace
 

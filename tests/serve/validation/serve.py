@@ -521,17 +521,16 @@ def slow_readers():
             check(code == "busy", "answers of 48 pings of 8 MB are kept")
         time.sleep(1.0)
         after = rss(process)
-        deaf[0].receive()
-        check(after - before < 75000, f"{before} kB, then {after} kB for at most 30 MB of answers")
+        check(after - before < 110000, f"{before} kB, then {after} kB for at most 30 MB of answers")
         for client in deaf[1:]:
             client.close()
-        for _ in range(7):  # then there is room again
+        for _ in range(8):  # then there is room again
             check(deaf[0].receive()[1].nbytes == one, "samples")
         deaf[0].close()
     print(f"slow readers: {before} kB before, {after} kB with 48 pings of {one} bytes not taken")
 
     os.mkdir("quota")
-    with Client.start("sea.toml", "--output-dir", "quota", "--limit", "output_bytes=2000000",
+    with Client.start("sea.toml", "--output-dir", "quota", "--limit", "output_bytes=5000000",
                       program=ASDIC) as client:
         files = []
         with contextlib.suppress(Refused):
@@ -540,7 +539,7 @@ def slow_readers():
         refused("limit", client.ping)
         check(client.ping(deliver="none").answer["ping"] == len(files) + 1, "it was not begun")
     sizes = [os.path.getsize(file) for file in Path("quota").rglob("*.h5")]
-    check(len(sizes) == len(files) > 3 and sum(sizes) <= 2e6, sizes)
+    check(len(sizes) == len(files) > 3 and sum(sizes) <= 5e6, sizes)
 
 
 def does_not_grow(count):
