@@ -143,6 +143,12 @@ class Client:
     def state(self):
         return self.command("state")[0]
 
+    def save(self, **fields):
+        """→ dict: file, or with deliver="text" toml: the scenario as it is by now; ping: which of
+        its pings is the next one
+        """
+        return self.command("save", **fields)[0]
+
     def limits(self):
         return self.command("limits")[0]["limits"]
 

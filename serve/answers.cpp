@@ -146,12 +146,15 @@ std::string ping_line(const ServedPing& served, const PingRecord& record,
   return text(line);
 }
 
-std::string update_line(const std::string& id, const Scenario& scenario, double now,
-                        double seconds) {
+std::string update_line(const std::string& id, const Scenario& scenario, double now, double seconds,
+                        const std::optional<double>& behind,
+                        const std::vector<std::string>& warnings) {
   OrderedJson line = answer(id, true);
   line["time"] = now;
   add_warnings(scenario, line);
+  for (const std::string& warning : warnings) line["warnings"].push_back(warning);
   line["latency"] = seconds;
+  if (behind) line["behind"] = *behind;
   return text(line);
 }
 
@@ -236,6 +239,16 @@ std::string levels_line(const ServedPing& served, const PingRecord& record,
   if (!served.warning.empty()) line["warnings"].push_back(served.warning);
   if (const std::string lack = ended_early(record.ended_searches); !lack.empty())
     line["warnings"].push_back(lack);
+  return text(line);
+}
+
+std::string save_line(const std::string& id, int ping, double time, const std::string& file,
+                      const std::string& toml) {
+  OrderedJson line = answer(id, true);
+  line["ping"] = ping;
+  line["time"] = time;
+  if (!file.empty()) line["file"] = file;
+  if (!toml.empty()) line["toml"] = toml;
   return text(line);
 }
 

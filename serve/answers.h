@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,8 +29,11 @@ struct ServedPing {
                                         const std::string& version);
 [[nodiscard]] std::string ping_line(const ServedPing& served, const PingRecord& record,
                                     const Scenario& scenario);
+/// \param behind  by the clock: the time that it says was over for so long [s]; none: it is not
+/// told
 [[nodiscard]] std::string update_line(const std::string& id, const Scenario& scenario, double now,
-                                      double seconds);
+                                      double seconds, const std::optional<double>& behind,
+                                      const std::vector<std::string>& warnings);
 /// \param now  time of the scenario [s]   \param next  number of the next ping
 [[nodiscard]] std::string state_line(const std::string& id, const Scenario& scenario, double now,
                                      int next, const LatencyLog& latency);
@@ -42,6 +46,9 @@ struct ServedPing {
 /// Its levels follow.
 [[nodiscard]] std::string levels_line(const ServedPing& served, const PingRecord& record,
                                       const Scenario& scenario);
+/// Of a scenario that was saved. \param ping  of it that is the next one, at \p time
+[[nodiscard]] std::string save_line(const std::string& id, int ping, double time,
+                                    const std::string& file, const std::string& toml);
 [[nodiscard]] std::string limits_line(const std::string& id, const SessionLimits& limits);
 /// \param number  of commands that were called off
 [[nodiscard]] std::string cancel_line(const std::string& id, std::size_t number);

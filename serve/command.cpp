@@ -154,6 +154,7 @@ Command read_command(std::string_view line, const SessionLimits& limits,
                      std::span<const std::string_view> names) {
   const Json all = parse(line, limits);
   Command command;
+  command.line = line;
   command.id = checked_id(all);
   command.name = checked_name(all, names);
   TomlValue::Table fields;

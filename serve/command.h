@@ -11,10 +11,12 @@ namespace asdic::detail::serve {
 
 /// One line of a client: what it wants, and the values that come with it.
 struct Command {
-  std::string_view name;    ///< one of those that it was read with
-  std::string id = "null";  ///< JSON, echoed in the answer
-  TomlValue fields;         ///< a table of all keys but "command" and "id"
-  double received = 0.0;    ///< on the server's clock [s]
+  std::string_view name;            ///< one of those that it was read with
+  std::string id = "null";          ///< JSON, echoed in the answer
+  TomlValue fields;                 ///< a table of all keys but "command" and "id"
+  double received = 0.0;            ///< on the server's clock [s]
+  std::string line = {};            ///< as it came
+  std::optional<double> acts = {};  ///< when, as a log says [s]
 };
 
 /// What the first line of a connection says.

@@ -15,8 +15,8 @@ Transmission transmission_of(const SessionState& session, const PingRequest& req
                                           : session.schedule.next(scenario);
   if (request.time)
     sent.time = *request.time;
-  else if (session.settings.pace.by_the_clock())
-    sent.time = session.now();
+  else if (session.acts)
+    sent.time = *session.acts;
   if (request.elevation) {
     const AnyBeam& beam = scenario.transmitters[static_cast<std::size_t>(sent.transmitter)].beam;
     if (!steers(beam))

@@ -10,13 +10,14 @@ namespace asdic::detail::serve {
 
 Answer refusal_answer(const std::string& id, const std::string& code, const std::string& message,
                       bool last) {
-  return {.line = refusal_line(id, code, message), .samples = {}, .last = last};
+  return {.line = refusal_line(id, code, message), .samples = {}, .last = last, .refused = true};
 }
 
 Session::Session(const SessionSettings& settings, std::function<double()> clock,
                  std::span<const AnyCommand> commands)
     : state_(settings, std::move(clock)), commands_(commands) {
   for (const AnyCommand& command : commands_) names_.push_back(command.name);
+  if (settings.log) number_ = settings.log->new_session();
 }
 
 Answer Session::greeting() const {
@@ -41,7 +42,34 @@ const AnyCommand& Session::known(const Command& command) const {
                        [&](const AnyCommand& one) { return one.name == command.name; });
 }
 
+void Session::log(const Command& command, double begun, bool ok) {
+  if (state_.settings.log)
+    state_.settings.log->write(number_, command, state_.acts, state_.start, begun, state_.clock(),
+                               ok);
+}
+
 Answer Session::execute(const Command& command) {
+  const double begun = state_.clock();
+  state_.acts.reset();
+  if (command.acts)
+    state_.acts = command.acts;
+  else if (state_.settings.pace.by_the_clock())
+    state_.acts = state_.now();
+  struct Over {
+    ~Over() { acts.reset(); }
+    std::optional<double>& acts;
+  } over{state_.acts};
+  try {
+    Answer answer = carry_out(command);
+    log(command, begun, !answer.refused);
+    return answer;
+  } catch (const Interrupted&) {
+    log(command, begun, false);
+    throw;
+  }
+}
+
+Answer Session::carry_out(const Command& command) {
   try {
     Answer answer = known(command).run(state_, command);
     if (const std::size_t most = state_.settings.limits.answer_bytes; answer.line.size() > most)

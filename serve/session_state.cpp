@@ -32,6 +32,7 @@ SessionState::SessionState(const SessionSettings& common, std::function<double()
       propagation_(std::make_shared<SharedPropagation>(settings.limits.kept_bytes)) {}
 
 double SessionState::now() const {
+  if (acts) return *acts;
   if (settings.pace.by_the_clock()) return (clock() - start) * *settings.pace.factor;
   return schedule.next(live.state().scenario).time;
 }
@@ -52,14 +53,22 @@ const PingSimulator& SessionState::simulator_of(LiveScenario::State state) {
   return *simulators_.front().simulator;
 }
 
-std::filesystem::path SessionState::next_file() {
+const std::filesystem::path& SessionState::folder() {
   for (int n = 1; folder_.empty(); ++n) {
     const auto folder = settings.output / ("session-" + padded(n, 4));
     std::error_code error;
     if (std::filesystem::create_directory(folder, error)) folder_ = folder;
     if (error) throw RunError(folder.string() + ": " + error.message());
   }
-  return folder_ / ("ping-" + padded(pings + 1, 6) + ".h5");
+  return folder_;
+}
+
+std::filesystem::path SessionState::next_file() {
+  return folder() / ("ping-" + padded(pings + 1, 6) + ".h5");
+}
+
+std::filesystem::path SessionState::next_save() {
+  return folder() / ("scenario-" + padded(++saves_, 6) + ".toml");
 }
 
 }  // namespace asdic::detail::serve

@@ -4,10 +4,12 @@
 #include <functional>
 #include <list>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "io/ping/ping_file.h"
+#include "serve/command_log.h"
 #include "serve/latency.h"
 #include "serve/live_scenario.h"
 #include "serve/output_quota.h"
@@ -27,6 +29,8 @@ struct SessionSettings {
   SessionLimits limits;
   Pace pace;
   Provenance provenance;
+  bool tells_scenario = false;      ///< to clients, as text (the command `save`)
+  std::shared_ptr<CommandLog> log;  ///< of what is carried out; none: nothing is written
   std::shared_ptr<OutputQuota> written = std::make_shared<OutputQuota>();  ///< of files
   /// Told what is not for clients: why a file could not be written.
   std::function<void(const std::string&)> report = [](const std::string&) {};
@@ -37,6 +41,7 @@ struct Answer {
   std::string line;
   std::vector<float> samples = {};  ///< little-endian float32 after the line; none: nothing follows
   bool last = false;                ///< the connection is closed after it
+  bool refused = false;
 };
 
 /// For an answer there is no room yet: other answers have not been taken.
@@ -56,21 +61,29 @@ class SessionState {
   double start;  ///< of the session, on the clock
   LiveScenario live;
   PingSchedule schedule;
-  int pings = 0;  ///< done
+  int pings = 0;                   ///< done
+  double latest_ping = -infinity;  ///< time of the latest in the scenario [s]
+  /// Time of the scenario at which the command in hand acts: by the clock, or as a log says; none:
+  /// the schedule has it [s].
+  std::optional<double> acts;
   LatencyLog latency;
   /// Called before what follows an answer's line is made: there is room for so many bytes.
   /// \throws NoRoom to be asked again later; a Refusal
   std::function<void(std::size_t bytes)> make_room = [](std::size_t) {};
 
-  [[nodiscard]] double now() const;  ///< of the scenario [s]
+  [[nodiscard]] double now() const;  ///< of the scenario; the same for all of a command [s]
   /// A simulator of a scenario, or the one that was made of it not long ago.
   const PingSimulator& simulator_of(LiveScenario::State state);
   [[nodiscard]] const MemoryBudget& budget() const noexcept { return budget_; }
   /// For the next ping: sessions write into folders of their own, which nobody had before, so
   /// nothing is overwritten.
   [[nodiscard]] std::filesystem::path next_file();
+  /// The same for a scenario that is saved.
+  [[nodiscard]] std::filesystem::path next_save();
 
  private:
+  const std::filesystem::path& folder();
+
   struct Simulator {
     std::string key;
     std::unique_ptr<PingSimulator> simulator;
@@ -81,6 +94,7 @@ class SessionState {
   std::shared_ptr<SharedPropagation> propagation_;  // what was traced
   std::list<Simulator> simulators_;                 // the latest used first
   std::filesystem::path folder_;                    // of this session's files
+  int saves_ = 0;
 };
 
 }  // namespace asdic::detail::serve

@@ -10,6 +10,7 @@
 #include "serve/commands/ping.h"
 #include "serve/commands/quit.h"
 #include "serve/commands/rays.h"
+#include "serve/commands/save.h"
 #include "serve/commands/state.h"
 #include "serve/commands/update.h"
 
@@ -21,6 +22,6 @@ inline constexpr std::array<AnyCommand, sizeof...(C)> command_list{any_command<C
 /// Every command. A new one is one file and one name here.
 inline constexpr std::span<const AnyCommand> all_commands =
     command_list<PingCommand, UpdateCommand, StateCommand, LimitsCommand, ArrivalsCommand,
-                 RaysCommand, FieldCommand, LevelsCommand, CancelCommand, QuitCommand>;
+                 RaysCommand, FieldCommand, LevelsCommand, SaveCommand, CancelCommand, QuitCommand>;
 
 }  // namespace asdic::detail::serve

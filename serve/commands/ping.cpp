@@ -61,7 +61,8 @@ Answer PingCommand::run(SessionState& session, const Command& command) {
     record.timings.write = session.clock() - start;
   }
   ++session.pings;
-  session.schedule.sent(sent, request.time || settings.pace.by_the_clock());
+  session.latest_ping = std::max(session.latest_ping, sent.time);
+  session.schedule.sent(sent, request.time || session.acts);
   served.with_samples = request.deliver == Delivery::samples;
   served.latency = session.clock() - ping.due;
   session.latency.add(served.latency);

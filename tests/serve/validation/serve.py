@@ -7,6 +7,7 @@ not grow with the number of pings.
     ASDIC=build/ci/bin/asdic serve.py [PINGS]        default 150; scripts/deep_check.sh takes 10000
 """
 import contextlib
+import io
 import json
 import os
 import re
@@ -542,6 +543,93 @@ def slow_readers():
     check(len(sizes) == len(files) > 3 and sum(sizes) <= 5e6, sizes)
 
 
+class Told(Client):
+    """What a replay prints, as a client would have had it."""
+
+    def __init__(self, printed):
+        self._reader = io.BytesIO(printed)
+
+    def all(self):
+        while self._reader.tell() < len(self._reader.getbuffer()):
+            yield self.receive()
+
+
+def replayed(log, *more):
+    done = subprocess.run([ASDIC, "serve", "sea.toml", "--replay", log, *more], capture_output=True)
+    check(done.returncode == 0, done.stderr)
+    return [samples.tobytes() for _, samples in Told(done.stdout).all() if samples is not None]
+
+
+def saved_and_replayed():
+    """A saved scenario has the next ping's bits, and a log those of all of them."""
+    os.mkdir("saves")
+
+    def check_save(client, saved, **ping):
+        samples = client.ping(deliver="samples", **ping)
+        number = samples.answer["ping"]
+        check(saved["ping"] == number and saved["time"] == samples.answer["time"], saved)
+        subprocess.run([ASDIC, "ping", saved["file"], "-q", "--force", "-o", "saved.h5"], check=True)
+        with h5py.File("saved.h5") as file:
+            check(file["ping_time"][number - 1] == saved["time"], "another time")
+            check(file["pressure"][number - 1].tobytes() == samples.samples.tobytes(),
+                  f"ping {number} of what was saved has other bits")
+        return samples.samples
+
+    heard = []
+    with Client.start("sea.toml", "--output-dir", "saves", "--tell-scenario", "--log", "log.jsonl",
+                      program=ASDIC) as client:
+        heard.append(check_save(client, client.save()))
+        client.update(wind_speed=12, targets={"strength_db": 20}, array={"spacing": 0.7})
+        heard.append(check_save(client, client.save()))
+        client.update(platform={"position": [10.0, 5.0, 250.0], "heading_deg": 30, "speed": 3.1})
+        for _ in range(3):  # beyond the file's schedule
+            heard.append(check_save(client, client.save()))
+        refused("value", lambda: client.update(wind_speed=-1))
+        client.ping(time=47.3)
+        heard.append(check_save(client, client.save()))  # not of the schedule any more
+        text = client.save(deliver="text")
+        Path("text.toml").write_text(text["toml"])
+        heard.append(check_save(client, {**text, "file": "text.toml"}))
+        refused("value", lambda: client.save(deliver="samples"))
+        client.quit()
+    with Client.start("sea.toml", program=ASDIC) as client:
+        refused("value", client.save)  # it has no place, and may not be told
+    check(replayed("log.jsonl", "--output-dir", "saves", "--tell-scenario") ==
+          [one.tobytes() for one in heard], "a replay has other bits")
+    lines = [json.loads(line) for line in Path("log.jsonl").read_text().splitlines()]
+    check(lines[0]["asdic_log"] == 1 and lines[0]["pace"] == "fast", lines[0])
+    check([line["ok"] for line in lines[1:]].count(False) == 2, "refused ones are told as that")
+    check(all(0 <= line["received"] <= line["begun"] <= line["done"] for line in lines[1:]), lines)
+
+    # By the clock, several clients, one of them called off: a replay at once has the same bits.
+    heard = []
+    with server("--socket", "sonar.sock", "--pace", "20", "--log", "clock.jsonl") as (_, _):
+        with Client.unix("sonar.sock") as one, Client.unix("sonar.sock") as two:
+            for step in range(3):
+                for client in (one, two):
+                    client.update(platform={"heading_deg": 40 * step, "speed": 4})
+                    heard.append(client.ping(deliver="samples").samples.tobytes())
+                    time.sleep(0.02)
+            waits = one.send("ping", time=5000.0)
+            one.cancel(waits)
+            for _ in range(2):
+                one.receive()
+            heard.append(one.ping(deliver="samples", time=one.state()["time"] + 2.0).samples.tobytes())
+    check(replayed("clock.jsonl") == heard, "a replay of a session by the clock has other bits")
+    with open("clock.jsonl", "a") as log:
+        log.write('{"session": 1, "ok": tr')  # torn by a kill
+    check(replayed("clock.jsonl") == heard, "a torn line")
+    for arguments, said in (
+            (["--log", "clock.jsonl"], "which is there, expected a new file"),
+            (["--replay", "sea.toml"], "sea.toml:1: found another line"),
+            (["--replay", "nothing"], "cannot be read"),
+            (["--replay", "log.jsonl", "--set", "seed=3"], "another scenario (overrides)"),
+            (["--replay", "log.jsonl", "--pace", "real"], "expected none of them")):
+        done = subprocess.run([ASDIC, "serve", "sea.toml", *arguments], stdin=subprocess.DEVNULL,
+                              capture_output=True, text=True)
+        check(done.returncode == 2 and said in done.stderr, done)
+
+
 def does_not_grow(count):
     """Updates and pings, as a vehicle sends them."""
     with server("--socket", "sonar.sock", "--limit", "kept_bytes=1000000") as (process, _):
@@ -578,7 +666,7 @@ def main():
         pings = reference()
         for work in (lambda: by_standard_streams(pings), lambda: by_unix_socket(pings),
                      lambda: by_tcp(pings), in_time, ends, good_manners,
-                     the_model_by_itself, slow_readers, lambda: does_not_grow(count)):
+                     the_model_by_itself, slow_readers, saved_and_replayed, lambda: does_not_grow(count)):
             work()
         os.chdir("/")
     print("served by standard streams, Unix socket and TCP: all as asked")
