@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "app/console.h"
@@ -17,8 +16,6 @@
 
 namespace asdic::detail::app {
 namespace {
-
-using nlohmann::ordered_json;
 
 /// Ranges of the first few meetings with the surface [km].
 std::string hits(const RayPath& ray) {
@@ -98,44 +95,6 @@ std::string rays_table(const RaysResult& result) {
                std::to_string(ray.bottom_bounces), std::to_string(ray.turns), hits(ray)});
   }
   return table.text();
-}
-
-std::string rays_json(const RaysResult& result) {
-  const EarthLine earth(result.run_case);
-  ordered_json list = ordered_json::array();
-  for (const RayPath& ray : result.rays()) {
-    ordered_json range = ordered_json::array(), depth = range, time = range, latitude = range,
-                 longitude = range;
-    for (const RayPoint& point : ray.points) {
-      const GeographicPlace there = earth.at(point.range);
-      latitude.push_back(there.latitude);
-      longitude.push_back(there.longitude);
-      range.push_back(point.range);
-      depth.push_back(point.depth);
-      time.push_back(point.time);
-    }
-    list.push_back({{"launch_elevation_deg", degrees(ray.launch_elevation)},
-                    {"final_elevation_deg", degrees(ray.final_elevation)},
-                    {"travel_time", ray.points.back().time},
-                    {"path_length", ray.path_length},
-                    {"surface_bounces", ray.surface_bounces},
-                    {"bottom_bounces", ray.bottom_bounces},
-                    {"turns", ray.turns},
-                    {"surface_hits", ray.surface_hits},
-                    {"range", range},
-                    {"depth", depth},
-                    {"time", time}});
-    if (!earth.known()) continue;
-    list.back()["latitude"] = latitude;
-    list.back()["longitude"] = longitude;
-  }
-  const ordered_json all = {{"filetype", "asdic rays"},
-                            {"version", "1.0"},
-                            {"title", result.origin.title},
-                            {"scenario", result.origin.path},
-                            {"source_depth", result.source_depth()},
-                            {"rays", list}};
-  return all.dump(1, ' ', false, ordered_json::error_handler_t::replace) + '\n';
 }
 
 void write_rays_file(OutputFile&& to, const RaysResult& result) {

@@ -12,6 +12,8 @@
 #include "core/error.h"
 #include "io/ping/provenance.h"
 #include "io/text/csv_table.h"
+#include "raytrace/parallel/progress.h"
+#include "serve/command_log.h"
 #include "serve/server.h"
 #include "serve/token.h"
 
@@ -21,6 +23,8 @@ namespace {
 struct ServeOptions {
   ScenarioChoice scenario;
   std::string socket, data_dir, output_dir, token_file, pace = "fast";
+  std::string log, replay;
+  bool tells_scenario = false;
   std::optional<std::uint16_t> port;
   std::optional<int> threads;
   std::vector<std::string> limits;
@@ -61,7 +65,34 @@ serve::SessionSettings settings_of(const ServeOptions& options, int threads) {
   settings.pace = serve::parse_pace(options.pace);
   settings.provenance = provenance(threads);
   settings.report = report;
+  settings.tells_scenario = options.tells_scenario;
+  if (!options.log.empty())
+    settings.log = std::make_shared<serve::CommandLog>(options.log, settings);
   return settings;
+}
+
+/// Answers on standard output, as a client would have had them.
+int replay(const serve::SessionSettings& settings, const ServeOptions& options) {
+  if (settings.pace.by_the_clock() || !options.socket.empty() || options.port)
+    throw InputError({.where = "--replay",
+                      .got = "--pace, --socket or --tcp",
+                      .expected = "none of them: a log is carried out at once"});
+  std::size_t refused = 0;
+  try {
+    until_interrupted([&] {
+      refused = serve::replay(settings, options.replay, [](const serve::Answer& answer) {
+        const std::string line = answer.line + '\n';
+        std::fwrite(line.data(), 1, line.size(), stdout);
+        std::fwrite(answer.samples.data(), sizeof(float), answer.samples.size(), stdout);
+      });
+    });
+  } catch (const Interrupted&) {
+    throw RunError("interrupted");
+  }
+  std::fflush(stdout);
+  if (refused > 0)
+    throw RunError(std::to_string(refused) + " commands were refused that had been carried out");
+  return 0;
 }
 
 int serve_scenario(const ServeOptions& options) {
@@ -70,6 +101,7 @@ int serve_scenario(const ServeOptions& options) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   static_cast<std::size_t>(threads));
   serve::SessionSettings settings = settings_of(options, threads);
+  if (!options.replay.empty()) return replay(settings, options);
   const StopOnInterrupt interrupt;
   serve::Server server(std::move(settings),
                        {.socket = options.socket,
@@ -118,6 +150,18 @@ void add_serve_command(Program& program) {
                         "(docs/formats/serve.md)")
             .type_name("NAME=VALUE")
             .one_at_a_time();
+        command
+            .add_option("--log", options->log,
+                        "new file for the commands that are carried out, with their times "
+                        "(docs/formats/serve.md)")
+            .type_name("FILE");
+        command
+            .add_option("--replay", options->replay,
+                        "carry out what --log has written once more, with the same bits, and print "
+                        "the answers")
+            .type_name("FILE");
+        command.add_flag("--tell-scenario", options->tells_scenario,
+                         "let clients have the scenario as text (the command save)");
         add_threads_option(command, options->threads);
         command.footer(
             "Ctrl-C finishes the ping in hand, or leaves it after a second; a second one ends at "

@@ -11,6 +11,7 @@
 #include "serve/listen_request.h"
 #include "serve/ping_request.h"
 #include "serve/session_limits.h"
+#include "serve/sound_request.h"
 
 namespace asdic::detail::app {
 namespace {
@@ -67,6 +68,8 @@ std::span<const SettingsSection> settings_sections() {
        [](std::string_view) { return serve::update_settings(); }},
       {"serve", "listen", "keys of the command listen",
        [](std::string_view) { return serve::listen_settings(); }},
+      {"serve", "arrivals", "keys of the command arrivals", of_struct<serve::ArrivalsRequest>},
+      {"serve", "rays", "keys of the command rays", of_struct<serve::RaysRequest>},
       {"serve", "limits", "what a client may ask for: --limit", of_struct<serve::SessionLimits>}};
   return all;
 }

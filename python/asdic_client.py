@@ -66,6 +66,8 @@ class Client:
     tell them by their `id`.
     """
 
+    _FOLLOWS = {"samples": 2, "pressure": 3, "levels": 2}  # what may follow a line, its dimensions
+
     def __init__(self, reader, writer, token=None, when_full="busy", close=()):
         self._reader, self._writer, self._close = reader, writer, close
         self._id = 0
@@ -155,12 +157,47 @@ class Client:
             self.scheduled.append(line)
             line, samples = self.receive()
         return Block(line, samples)
+    # The propagation model by itself: what `asdic arrivals`, `rays` and `field` tell.
+
+    def arrivals(self, **fields):
+        """→ dict with legs. Keys: time, leg ("target", "array"), target (a name), frequency; or of
+        a receiver anywhere: range, receiver_depth, source_depth, bearing_deg
+        """
+        return self.command("arrivals", **fields)[0]
+
+    def rays(self, **fields):
+        """→ dict with rays. Keys: time, from_deg, to_deg, count, elevations_deg, range,
+        source_depth, bearing_deg, bounces
+        """
+        return self.command("rays", **fields)[0]
+
+    def field(self, **fields):
+        """→ dict, pressure [sources × depths × ranges] complex64. Keys: time, run (a table)"""
+        return self.command("field", **fields)
+
+    def levels(self, **fields):
+        """→ dict, [3 × intervals]: mean-square pressure [Pa²] of echo, reverberation and noise that
+        the next ping would have. Keys: those of ping, but for deliver and replica
+        """
+        return self.command("levels", **fields)
 
     def state(self):
         return self.command("state")[0]
 
+    def save(self, **fields):
+        """→ dict: file, or with deliver="text" toml: the scenario as it is by now; ping: which of
+        its pings is the next one
+        """
+        return self.command("save", **fields)[0]
+
     def limits(self):
         return self.command("limits")[0]["limits"]
+
+    def cancel(self, of=None):
+        """Calls off the command with an id, that send() gave, or all that were sent before. → the
+        id of this one. Its answer and those of the cancelled are had by receive().
+        """
+        return self.send("cancel") if of is None else self.send("cancel", of=of)
 
     def quit(self):
         answer, _ = self.command("quit")
@@ -196,9 +233,14 @@ class Client:
         if not line.endswith(b"\n"):
             raise ConnectionError("the server has closed the connection")
         answer = json.loads(line)
-        what = answer.get("samples", {})
-        is_complex = len(what.get("shape", ())) == 3  # real and imaginary part
-        samples = self._numbers(what, is_complex) if "bytes" in what else None
+        is_complex, samples = False, None
+        for name, dimensions in self._FOLLOWS.items():  # real and imaginary part: one more
+            what = answer.get(name, {})
+            if "shape" in what:
+                is_complex = len(what["shape"]) > dimensions
+            if "bytes" in what:
+                samples = self._numbers(what, is_complex)
+                break
         if "replica" in answer:
             answer["replica"]["values"] = self._numbers(answer["replica"], is_complex)
         return answer, samples

@@ -177,12 +177,15 @@ std::string listening_ended_line(double time) {
   return text({{"listening", false}, {"time", time}});
 }
 
-std::string update_line(const std::string& id, const Scenario& scenario, double now,
-                        double seconds) {
+std::string update_line(const std::string& id, const Scenario& scenario, double now, double seconds,
+                        const std::optional<double>& behind,
+                        const std::vector<std::string>& warnings) {
   OrderedJson line = answer(id, true);
   line["time"] = now;
   add_warnings(scenario, line);
+  for (const std::string& warning : warnings) line["warnings"].push_back(warning);
   line["latency"] = seconds;
+  if (behind) line["behind"] = *behind;
   return text(line);
 }
 
@@ -207,10 +210,89 @@ std::string state_line(const std::string& id, const Scenario& scenario, double n
   return text(line);
 }
 
+namespace {
+
+/// Without what is the server's own: where its files are.
+OrderedJson result(const std::string& id, double time, const std::string& json) {
+  OrderedJson line = answer(id, true);
+  line["time"] = time;
+  OrderedJson all = OrderedJson::parse(json);
+  for (auto& [key, value] : all.items())
+    if (key != "filetype" && key != "scenario" && key != "output") line[key] = std::move(value);
+  return line;
+}
+
+/// What follows a line.
+OrderedJson numbers(const OrderedJson& shape) {
+  std::size_t bytes = sizeof(float);
+  for (const auto& n : shape) bytes *= n.get<std::size_t>();
+  return {{"shape", shape}, {"type", "float32"}, {"byte_order", "little"}, {"bytes", bytes}};
+}
+
+}  // namespace
+
+std::string result_line(const std::string& id, double time, const std::string& json,
+                        const std::vector<std::string>& warnings) {
+  OrderedJson line = result(id, time, json);
+  if (!warnings.empty()) line["warnings"] = warnings;
+  return text(line);
+}
+
+std::string field_line(const std::string& id, double time, const std::string& json,
+                       const FieldData& field) {
+  OrderedJson line = result(id, time, json);
+  const ReceiverGrid& grid = field.receivers;
+  line["source_depth"] = field.source_depths;
+  line["depth"] = grid.depths;
+  line["range"] = grid.ranges;
+  line["irregular"] = grid.irregular;
+  line["pressure"] =
+      numbers({field.source_depths.size(), grid.rows(), grid.ranges.size(), std::size_t{2}});
+  return text(line);
+}
+
+std::string levels_line(const ServedPing& served, const PingRecord& record,
+                        const Scenario& scenario) {
+  OrderedJson line = answer(served.id, true);
+  line["ping"] = record.ping;
+  line["time"] = record.start_time;
+  line["transmitter"] = scenario.transmitters[static_cast<std::size_t>(record.transmitter)].name;
+  line["elevation_deg"] = degrees(record.elevation);
+  line["targets"] = targets(record);
+  const LevelSeries& series = record.levels;
+  line["levels"] = numbers({std::size_t{3}, series.echo.size()});
+  line["levels"]["rows"] = {"echo", "reverberation", "noise"};
+  line["levels"]["unit"] = "Pa2";
+  line["levels"]["time_start"] = record.recording.start + 0.5 * series.time_step;
+  line["levels"]["time_step"] = series.time_step;
+  add_warnings(scenario, line);
+  add_left_out(record.bounces, scenario, line);
+  if (!served.warning.empty()) line["warnings"].push_back(served.warning);
+  if (const std::string lack = ended_early(record.ended_searches); !lack.empty())
+    line["warnings"].push_back(lack);
+  return text(line);
+}
+
+std::string save_line(const std::string& id, int ping, double time, const std::string& file,
+                      const std::string& toml) {
+  OrderedJson line = answer(id, true);
+  line["ping"] = ping;
+  line["time"] = time;
+  if (!file.empty()) line["file"] = file;
+  if (!toml.empty()) line["toml"] = toml;
+  return text(line);
+}
+
 std::string limits_line(const std::string& id, const SessionLimits& limits) {
   OrderedJson line = answer(id, true);
   for (const NamedLimit& one : limits_by_name(limits))
     line["limits"][std::string(one.name)] = one.value;
+  return text(line);
+}
+
+std::string cancel_line(const std::string& id, std::size_t number) {
+  OrderedJson line = answer(id, true);
+  line["cancelled"] = number;
   return text(line);
 }
 

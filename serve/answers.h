@@ -1,7 +1,10 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "io/result/field_file.h"
 #include "serve/latency.h"
 #include "serve/listening.h"
 #include "serve/pace.h"
@@ -38,12 +41,29 @@ struct ServedPing {
                                         const std::string& version);
 [[nodiscard]] std::string ping_line(const ServedPing& served, const PingRecord& record,
                                     const Scenario& scenario);
+/// \param behind  by the clock: the time that it says was over for so long [s]; none: it is not
+/// told
 [[nodiscard]] std::string update_line(const std::string& id, const Scenario& scenario, double now,
-                                      double seconds);
+                                      double seconds, const std::optional<double>& behind,
+                                      const std::vector<std::string>& warnings);
 /// \param now  time of the scenario [s]   \param next  number of the next ping
 [[nodiscard]] std::string state_line(const std::string& id, const Scenario& scenario, double now,
                                      int next, const LatencyLog& latency);
+/// What a command of asdic's tells as JSON. \param time  of the scenario [s]
+[[nodiscard]] std::string result_line(const std::string& id, double time, const std::string& json,
+                                      const std::vector<std::string>& warnings);
+/// The same of a field, whose pressure follows.
+[[nodiscard]] std::string field_line(const std::string& id, double time, const std::string& json,
+                                     const FieldData& field);
+/// Its levels follow.
+[[nodiscard]] std::string levels_line(const ServedPing& served, const PingRecord& record,
+                                      const Scenario& scenario);
+/// Of a scenario that was saved. \param ping  of it that is the next one, at \p time
+[[nodiscard]] std::string save_line(const std::string& id, int ping, double time,
+                                    const std::string& file, const std::string& toml);
 [[nodiscard]] std::string limits_line(const std::string& id, const SessionLimits& limits);
+/// \param number  of commands that were called off
+[[nodiscard]] std::string cancel_line(const std::string& id, std::size_t number);
 [[nodiscard]] std::string quit_line(const std::string& id, int pings, const LatencyLog& latency);
 [[nodiscard]] std::string refusal_line(const std::string& id, const std::string& code,
                                        const std::string& message);

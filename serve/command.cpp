@@ -154,6 +154,7 @@ Command read_command(std::string_view line, const SessionLimits& limits,
                      std::span<const std::string_view> names) {
   const Json all = parse(line, limits);
   Command command;
+  command.line = line;
   command.id = checked_id(all);
   command.name = checked_name(all, names);
   TomlValue::Table fields;
@@ -228,6 +229,13 @@ std::optional<double> number_said(const TomlValue& fields, std::string_view key)
   if (const auto* number = std::get_if<double>(&value->data)) return *number;
   if (const auto* number = std::get_if<std::int64_t>(&value->data))
     return static_cast<double>(*number);
+  return std::nullopt;
+}
+
+std::optional<std::string> id_text(const TomlValue& value) {
+  if (const auto* text = std::get_if<std::string>(&value.data)) return Json(*text).dump();
+  if (const auto* number = std::get_if<std::int64_t>(&value.data)) return Json(*number).dump();
+  if (const auto* number = std::get_if<double>(&value.data)) return Json(*number).dump();
   return std::nullopt;
 }
 

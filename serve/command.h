@@ -11,10 +11,12 @@ namespace asdic::detail::serve {
 
 /// One line of a client: what it wants, and the values that come with it.
 struct Command {
-  std::string_view name;    ///< one of those that it was read with
-  std::string id = "null";  ///< JSON, echoed in the answer
-  TomlValue fields;         ///< a table of all keys but "command" and "id"
-  double received = 0.0;    ///< on the server's clock [s]
+  std::string_view name;            ///< one of those that it was read with
+  std::string id = "null";          ///< JSON, echoed in the answer
+  TomlValue fields;                 ///< a table of all keys but "command" and "id"
+  double received = 0.0;            ///< on the server's clock [s]
+  std::string line = {};            ///< as it came
+  std::optional<double> acts = {};  ///< when, as a log says [s]
 };
 
 /// What the first line of a connection says.
@@ -35,6 +37,9 @@ struct Handshake {
 
 /// The number of a key as it stands there; none: it has none, or something else.
 [[nodiscard]] std::optional<double> number_said(const TomlValue& fields, std::string_view key);
+
+/// A value as an id, JSON; none: it is neither a number nor a text.
+[[nodiscard]] std::optional<std::string> id_text(const TomlValue& value);
 
 /// \throws Refusal ("handshake") whose message says nothing of the line
 [[nodiscard]] Handshake read_handshake(std::string_view line);

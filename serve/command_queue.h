@@ -1,10 +1,12 @@
 #pragma once
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
 #include <mutex>
 #include <optional>
+#include <vector>
 
 #include "serve/command.h"
 
@@ -30,28 +32,51 @@ class CommandQueue {
   }
 
   /// The next one; waits for it. None when the queue is closed and empty.
-  std::optional<Command> pop() {
+  /// \param taken  called with it before others see that it waits no more
+  template <class Taken>
+  std::optional<Command> pop(const Taken& taken) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return closed_ || !waiting_.empty(); });
-    if (waiting_.empty()) return std::nullopt;
-    Command command = std::move(waiting_.front());
-    waiting_.pop_front();
-    return command;
+    return take_first(taken);
   }
 
   /// The same, and none if none has come after a while.
-  std::optional<Command> pop_within(std::chrono::milliseconds most) {
-    {
-      std::unique_lock lock(mutex_);
-      changed_.wait_for(lock, most, [&] { return closed_ || !waiting_.empty(); });
-      if (waiting_.empty()) return std::nullopt;
-    }
-    return pop();
+  template <class Taken>
+  std::optional<Command> pop_within(std::chrono::milliseconds most, const Taken& taken) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, most, [&] { return closed_ || !waiting_.empty(); });
+    return take_first(taken);
   }
   /// Whether no more come, and none is left.
   [[nodiscard]] bool over() const {
     const std::lock_guard lock(mutex_);
     return closed_ && waiting_.empty();
+  }
+  /// Whether all that wait are so.
+  template <class Such>
+  [[nodiscard]] bool all_of(const Such& such) const {
+    const std::lock_guard lock(mutex_);
+    return std::all_of(waiting_.begin(), waiting_.end(), such);
+  }
+
+  std::optional<Command> pop() {
+    return pop([](const Command&) {});
+  }
+
+  /// Takes those out that are meant.
+  template <class Meant>
+  std::vector<Command> take_out(const Meant& meant) {
+    const std::lock_guard lock(mutex_);
+    std::vector<Command> out;
+    std::deque<Command> stay;
+    for (Command& one : waiting_) {
+      if (meant(one))
+        out.push_back(std::move(one));
+      else
+        stay.push_back(std::move(one));
+    }
+    waiting_ = std::move(stay);
+    return out;
   }
 
   /// No more come; those that are there are still handed out.
@@ -62,6 +87,15 @@ class CommandQueue {
   }
 
  private:
+  template <class Taken>
+  std::optional<Command> take_first(const Taken& taken) {
+    if (waiting_.empty()) return std::nullopt;
+    Command command = std::move(waiting_.front());
+    waiting_.pop_front();
+    taken(command);
+    return command;
+  }
+
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Command> waiting_;

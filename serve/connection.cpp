@@ -1,11 +1,13 @@
 #include "serve/connection.h"
 
+#include <poll.h>
 #include <sys/socket.h>
 
 #include <array>
 #include <asio.hpp>
 #include <chrono>
 
+#include "serve/commands/cancel.h"
 #include "serve/connection_words.h"
 #include "serve/line_splitter.h"
 #include "serve/outbox.h"
@@ -18,6 +20,14 @@ namespace {
 constexpr double linger = 1.0;       // for a client to read the last line [s]
 constexpr double last_words = 10.0;  // to take what is left when the server stops [s]
 constexpr std::size_t longest_handshake = 4096;
+constexpr std::size_t little =
+    1 << 20;  // that each may have to take when all have too much [bytes]
+
+bool is_tcp(int socket) {
+  int domain = 0;
+  socklen_t size = sizeof domain;
+  return ::getsockopt(socket, SOL_SOCKET, SO_DOMAIN, &domain, &size) == 0 && domain == AF_INET;
+}
 
 }  // namespace
 
@@ -34,6 +44,7 @@ class Connection::Impl {
         out_(io, ends.out),
         timer_(io),
         splitter_(longest_handshake),
+        outbox_(engine.owed),
         active_(engine.clock()) {}
 
   void start() {
@@ -64,7 +75,10 @@ class Connection::Impl {
  private:
   // In: bytes, lines, commands ---------------------------------------------------------------
 
-  [[nodiscard]] bool behind() const { return outbox_.bytes() > limits_.answer_bytes; }
+  [[nodiscard]] bool behind() const {
+    return outbox_.bytes() > limits_.answer_bytes ||
+           (engine_.owed > limits_.total_answer_bytes && outbox_.bytes() > little);
+  }
   [[nodiscard]] bool paused() const {
     return behind() || (worker_ && (!worker_->has_begun() || (waits_ && worker_->full())));
   }
@@ -84,6 +98,7 @@ class Connection::Impl {
     in_.async_read_some(asio::buffer(buffer_), [this](std::error_code error, std::size_t n) {
       reading_ = false;
       ended_ = bool(error);
+      if (error == asio::error::connection_reset) return give_up();
       pending_ = {buffer_.data(), n};
       process();
       close_when_done();
@@ -97,6 +112,8 @@ class Connection::Impl {
     try {
       Command command = read_command(line.text, limits_);
       command.received = active_;
+      if (command.name == CancelCommand::name)  // it overtakes those that it means
+        return send(CancelCommand::answer(command, worker_->cancel(CancelCommand::meant(command))));
       const std::string id = command.id;
       if (worker_->offer(std::move(command))) return;
       send(queue_full(id, limits_));
@@ -119,6 +136,13 @@ class Connection::Impl {
         SessionWorker::Ways{.deliver = [this](Answer answer) { deliver(std::move(answer)); },
                             .goes_on = [this] { asio::post(io_, [this] { process(); }); },
                             .behind = [this] { return behind(); },
+                            .reserve =
+                                [this](std::size_t bytes) {
+                                  return outbox_.reserve(bytes, limits_.answer_bytes,
+                                                         limits_.total_answer_bytes);
+                                },
+                            .release = [this](std::size_t bytes) { outbox_.release(bytes); },
+                            .waits = waits_,
                             .done = [this] { asio::post(io_, [this] { session_is_over(); }); }});
   }
 
@@ -193,8 +217,24 @@ class Connection::Impl {
   /// The client is gone, or does not read: nothing more is done for it.
   void drop() {
     dropped_ = closing_ = true;
-    if (worker_) worker_->stop();
+    if (worker_) worker_->abandon();
     reading_is_over();
+  }
+
+  /// Whether the client has closed its socket, in both directions: nobody will read an answer. Who
+  /// has ended its own half only still waits for them.
+  [[nodiscard]] bool has_hung_up() {
+    if (!ends_.socket || !worker_ || gone_) return false;
+    const int socket = out_.native_handle();
+    pollfd asked{.fd = socket, .events = 0, .revents = 0};
+    if (::poll(&asked, 1, 0) == 1 && (asked.revents & (POLLHUP | POLLERR)) != 0) return true;
+    // By TCP both look alike, until something is sent: a byte beside the stream, which who is there
+    // does not see in it.
+    if (ended_ && !probed_ && !worker_->idle() && is_tcp(socket)) {
+      probed_ = true;
+      static_cast<void>(::send(socket, "", 1, MSG_OOB | MSG_NOSIGNAL | MSG_DONTWAIT));
+    }
+    return false;
   }
 
   void close_when_done() {
@@ -235,6 +275,8 @@ class Connection::Impl {
     timer_.expires_after(std::chrono::milliseconds(200));
     timer_.async_wait([this](std::error_code error) {
       if (error || gone_) return;
+      if (worker_) worker_->check_time();
+      if (!dropped_ && !over_ && has_hung_up()) give_up();
       const double silent = engine_.clock() - active_;
       if (over_) {
         if (engine_.clock() > leaves_at_) return close();
@@ -280,6 +322,7 @@ class Connection::Impl {
   bool waits_ = false;     // the client would rather wait than be told "busy"
   bool reading_ = false;   // a read is under way
   bool ended_ = false;     // the client has sent its last byte
+  bool probed_ = false;    // whether it is there nevertheless
   bool deaf_ = false;      // nothing more is read
   bool stopping_ = false;  // the server is
   bool dropped_ = false;   // nothing more is written

@@ -27,6 +27,31 @@ Answer queue_full(const std::string& id, const SessionLimits& limits) {
                    "fewer: wait for an answer"));
 }
 
+Answer command_cancelled(const std::string& id) {
+  return refusal_answer(id, "cancelled", "the command was cancelled");
+}
+
+Answer command_too_long(const std::string& id, const SessionLimits& limits) {
+  return refusal_answer(
+      id, "limit",
+      refusal_text("command_seconds", "a command that takes longer, which was called off",
+                   "at most " + std::to_string(limits.command_seconds) + " s of computing"));
+}
+
+Answer client_too_long(const std::string& id, const SessionLimits& limits) {
+  return refusal_answer(
+      id, "limit",
+      refusal_text("client_seconds", "none left, and a command that was called off or not begun",
+                   "at most " + std::to_string(limits.client_seconds) +
+                       " s of computing of a client in all"));
+}
+
+Refusal answers_wait(const SessionLimits& limits) {
+  return {"busy", refusal_text("total_answer_bytes", "answers that other clients have not taken",
+                               "less than " + std::to_string(limits.total_answer_bytes) +
+                                   " bytes of them: try again later")};
+}
+
 Answer no_place(const SessionLimits& limits) {
   return refusal_answer("null", "limit",
                         refusal_text("server", std::to_string(limits.connections) + " connections",

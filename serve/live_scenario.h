@@ -51,6 +51,8 @@ class LiveScenario {
 
   [[nodiscard]] const State& state() const noexcept { return state_; }
   [[nodiscard]] const DataFolder& data() const noexcept { return data_; }
+  /// The tree of the file with all changes in it.
+  [[nodiscard]] const TomlValue& document() const noexcept { return document_; }
 
   /// The command `update`: all of it, or nothing. \param fields  of the command
   /// \param now  at which the positions are meant where it does not say [s] \throws Refusal

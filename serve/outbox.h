@@ -16,8 +16,35 @@ static_assert(std::endian::native == std::endian::little, "samples go out as the
 /// called in any thread, the rest in one.
 class Outbox {
  public:
+  /// \param all  bytes of the answers of all connections; outlives this
+  explicit Outbox(std::atomic<std::size_t>& all) : all_(all) {}
+  ~Outbox() { all_ -= bytes_; }
+  Outbox(const Outbox&) = delete;
+  Outbox& operator=(const Outbox&) = delete;
+
   /// An answer will be added: it counts from now on.
-  void expect(const Answer& answer) noexcept { bytes_ += size_of(answer); }
+  void expect(const Answer& answer) noexcept { count(size_of(answer)); }
+
+  enum class Room { here, not_yet, taken_by_others };
+  /// Makes room for bytes of an answer that is not yet made, which count from now on. A lone answer
+  /// of an empty outbox may be as long as it is.
+  /// \param most, most_of_all  that may wait here, and in all
+  Room reserve(std::size_t bytes, std::size_t most, std::size_t most_of_all) {
+    const std::size_t mine = bytes_;
+    if (mine > 0 && mine + bytes > most) return Room::not_yet;
+    std::size_t all = all_;
+    do {
+      if (all > 0 && all + bytes > most_of_all)
+        return mine == all ? Room::not_yet : Room::taken_by_others;
+    } while (!all_.compare_exchange_weak(all, all + bytes));
+    bytes_ += bytes;
+    return Room::here;
+  }
+  /// What was reserved is not needed any more, or counts as an answer by now.
+  void release(std::size_t bytes) noexcept {
+    bytes_ -= bytes;
+    all_ -= bytes;
+  }
 
   void add(Answer&& answer) {
     answer.line += '\n';
@@ -40,7 +67,7 @@ class Outbox {
   bool wrote(std::size_t bytes) {
     written_ += bytes;
     if (written_ < added_size(waiting_.front())) return false;
-    bytes_ -= written_;
+    release(written_);
     written_ = 0;
     waiting_.pop_front();
     return true;
@@ -48,12 +75,16 @@ class Outbox {
 
   /// Throws away what waits.
   void clear() {
-    for (const Answer& one : waiting_) bytes_ -= added_size(one);
+    for (const Answer& one : waiting_) release(added_size(one));
     waiting_.clear();
     written_ = 0;
   }
 
  private:
+  void count(std::size_t bytes) noexcept {
+    bytes_ += bytes;
+    all_ += bytes;
+  }
   static std::size_t size_of(const Answer& answer) noexcept {
     return answer.line.size() + 1 + answer.samples.size() * sizeof(float);
   }
@@ -63,6 +94,7 @@ class Outbox {
   std::deque<Answer> waiting_;
   std::size_t written_ = 0;             // of the first
   std::atomic<std::size_t> bytes_ = 0;  // with those that are expected
+  std::atomic<std::size_t>& all_;
 };
 
 }  // namespace asdic::detail::serve

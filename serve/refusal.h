@@ -9,7 +9,7 @@ namespace asdic::detail::serve {
 class Refusal : public std::runtime_error {
  public:
   /// \param code  for programs: handshake, token, json, command, value, limit, file, scenario,
-  /// busy, closing, idle, run
+  /// busy, cancelled, closing, idle, run
   /// Control characters of a client's own words are not passed on.
   Refusal(std::string code, std::string message)
       : std::runtime_error(printable(std::move(message))), code_(std::move(code)) {}

@@ -17,6 +17,7 @@ Answer send(SessionState& session, ServedPing served, const Transmission& sent,
   const int number = session.pings + 1;
   const PingRecord record = listening.send(session, number, sent, state);
   ++session.pings;
+  session.latest_ping = std::max(session.latest_ping, sent.time);
   session.schedule.sent(sent, moved);
   session.live.forget_before(listening.oldest() - tow_memory(state.scenario));
   served.latency = std::max(0.0, session.clock() - due);
@@ -38,7 +39,7 @@ Answer send_into_stream(SessionState& session, const Command& command, const Pin
   const double heard = listening.time();
   const bool by_the_clock = settings.pace.by_the_clock();
   if (!request.time) {
-    if (by_the_clock) sent.time = session.at(command.received);
+    if (by_the_clock) sent.time = session.acts.value_or(session.at(command.received));
     sent.time = std::max(sent.time, heard);
   }
   sent.time = listening.whole_samples(sent.time);

@@ -46,7 +46,7 @@ class Server::Impl {
  public:
   Impl(SessionSettings settings, const Address& address)
       : settings_(std::move(settings)),
-        engine_{.settings = settings_, .clock = seconds, .busy = {}},
+        engine_{.settings = settings_, .clock = seconds, .turns = {}, .owed = {}},
         streams_(address.socket.empty() && !address.port),
         token_(address.token),
         local_(io_),

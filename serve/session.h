@@ -27,7 +27,12 @@ class Session {
 
   /// How long until a command is to be carried out [s]: a ping at a later time by the clock.
   [[nodiscard]] double wait(const Command& command) const;
-  [[nodiscard]] Answer execute(const Command& command);
+  [[nodiscard]] Answer execute(const Command& command);  ///< \throws Interrupted, NoRoom
+  /// Whether it computes nothing to speak of: it needs no turn among others.
+  [[nodiscard]] bool is_light(const Command& command) const { return known(command).light; }
+
+  /// How room is made for an answer (SessionState::make_room).
+  void makes_room(std::function<void(std::size_t bytes)> way) { state_.make_room = std::move(way); }
 
   /// What an answer leaves to be done after it. \return a refusal, if it could not be
   [[nodiscard]] std::optional<Answer> finish(const Command& command,
@@ -37,12 +42,15 @@ class Session {
   [[nodiscard]] const LatencyLog& latency() const noexcept { return state_.latency; }
 
  private:
+  [[nodiscard]] Answer carry_out(const Command& command);
   [[nodiscard]] Answer guarded(const Command& command, const std::function<Answer()>& run);
+  void log(const Command& command, double begun, bool ok);
   [[nodiscard]] const AnyCommand& known(const Command& command) const;
 
   SessionState state_;
   std::span<const AnyCommand> commands_;
   std::vector<std::string_view> names_;
+  int number_ = 0;  // in the log
 };
 
 /// A refusal as an answer. \param id  JSON

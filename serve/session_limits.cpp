@@ -38,17 +38,26 @@ void SessionLimits::describe(Fields& field) {
   field("channels", channels, 1, most, "of all arrays");
   field("targets", targets, 1, most, "of the scenario");
   field("patches", patches, 1, most, "`reverberation.most_returns` of the scenario");
+  field("rays", rays, 1, most, "of a fan (`rays`)");
+  field("receivers", receivers, 1, most, "of a field, of all its sources");
   field("memory_bytes", memory_bytes, 1, most,
         "that a ping may need, estimated before it is begun; no more than "
         "[run.memory](scenario.md#memory)");
   field("file_bytes", file_bytes, 1, most, "of a file that a command names");
   field("kept_bytes", kept_bytes, 1, most, "of sound paths that a session keeps for later pings");
   field("queued_pings", queued_pings, 1, most, "commands of a connection that wait");
+  field("command_seconds", command_seconds, 1, most,
+        "that a command may compute, from its turn on; then it is called off");
+  field("client_seconds", client_seconds, 1, most, "of computing of a connection in all");
   field("connections", connections, 1, most,
         "with a handshake, at a time, of the Unix socket and of TCP each");
   field("answer_bytes", answer_bytes, 1, most,
-        "of answers that a slow reader has not taken; then its commands wait, and no more is read "
-        "from it");
+        "of an answer, and of answers that a slow reader has not taken: past it its commands wait, "
+        "and no more is read from it");
+  field("total_answer_bytes", total_answer_bytes, 1, most,
+        "of answers that readers have not taken, of all connections: past it pings with samples "
+        "are answered `busy`, or wait");
+  field("output_bytes", output_bytes, 1, most, "of files, over the server's life");
   field("handshake_seconds", handshake_seconds, 1, most, "for the first line of a socket's client");
   field("idle_seconds", idle_seconds, 1, most, "after which a silent socket is closed");
 }

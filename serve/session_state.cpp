@@ -5,6 +5,7 @@
 
 #include "io/scenario/document.h"
 #include "io/scenario/propagation.h"
+#include "raytrace/parallel/stop.h"
 
 namespace asdic::detail::serve {
 namespace {
@@ -39,6 +40,7 @@ double SessionState::clock_at(double time) const {
 }
 
 double SessionState::now() const {
+  if (acts) return *acts;
   if (settings.pace.by_the_clock()) return at(clock());
   if (listening) return listening->time();
   return schedule.next(live.state().scenario).time;
@@ -51,21 +53,31 @@ std::shared_ptr<const PingSimulator> SessionState::simulator_of(LiveScenario::St
     simulators_.splice(simulators_.begin(), simulators_, found);
   } else {
     auto made = std::make_shared<PingSimulator>(std::move(state.scenario), propagation_, budget_);
-    if (!std::exchange(judged_, true)) made->judge_paths();
+    if (!judged_) made->judge_paths();
+    stop_point();
+    judged_ = true;  // unless it was called off
     simulators_.push_front({.key = std::move(state.key), .simulator = std::move(made)});
     if (simulators_.size() > most_simulators) simulators_.pop_back();
   }
   return simulators_.front().simulator;
 }
 
-std::filesystem::path SessionState::next_file() {
+const std::filesystem::path& SessionState::folder() {
   for (int n = 1; folder_.empty(); ++n) {
     const auto folder = settings.output / ("session-" + padded(n, 4));
     std::error_code error;
     if (std::filesystem::create_directory(folder, error)) folder_ = folder;
     if (error) throw RunError(folder.string() + ": " + error.message());
   }
-  return folder_ / ("ping-" + padded(pings + 1, 6) + ".h5");
+  return folder_;
+}
+
+std::filesystem::path SessionState::next_file() {
+  return folder() / ("ping-" + padded(pings + 1, 6) + ".h5");
+}
+
+std::filesystem::path SessionState::next_save() {
+  return folder() / ("scenario-" + padded(++saves_, 6) + ".toml");
 }
 
 }  // namespace asdic::detail::serve

@@ -4,13 +4,16 @@
 #include <functional>
 #include <list>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "io/ping/ping_file.h"
+#include "serve/command_log.h"
 #include "serve/latency.h"
 #include "serve/listening.h"
 #include "serve/live_scenario.h"
+#include "serve/output_quota.h"
 #include "serve/pace.h"
 #include "serve/ping_schedule.h"
 #include "serve/session_limits.h"
@@ -27,6 +30,9 @@ struct SessionSettings {
   SessionLimits limits;
   Pace pace;
   Provenance provenance;
+  bool tells_scenario = false;      ///< to clients, as text (the command `save`)
+  std::shared_ptr<CommandLog> log;  ///< of what is carried out; none: nothing is written
+  std::shared_ptr<OutputQuota> written = std::make_shared<OutputQuota>();  ///< of files
   /// Told what is not for clients: why a file could not be written.
   std::function<void(const std::string&)> report = [](const std::string&) {};
 };
@@ -36,8 +42,14 @@ struct Answer {
   std::string line;
   std::vector<float> samples = {};  ///< little-endian float32 after the line; none: nothing follows
   bool last = false;                ///< the connection is closed after it
+  bool refused = false;
   /// What is done once it is delivered, as the rest of its command.
   std::function<void()> then = {};
+};
+
+/// For an answer there is no room yet: other answers have not been taken.
+struct NoRoom {
+  std::size_t bytes = 0;
 };
 
 /// What a session is in the middle of: what its commands look at, and change.
@@ -52,23 +64,36 @@ class SessionState {
   double start;  ///< of the session, on the clock
   LiveScenario live;
   PingSchedule schedule;
-  int pings = 0;  ///< done
+  int pings = 0;                   ///< done
+  double latest_ping = -infinity;  ///< time of the latest in the scenario [s]
+  /// Time of the scenario at which the command in hand acts: by the clock, or as a log says; none:
+  /// the schedule has it [s].
+  std::optional<double> acts;
   LatencyLog latency;
   /// From the first `listen` on.
   std::unique_ptr<Listening> listening;
-  /// Hands out what answers no command. \return false if there is nobody any more
-  std::function<bool(Answer)> tell = [](const Answer&) { return false; };
+  /// Hands out what answers no command. \throws Interrupted if the command is called off
+  std::function<void(Answer)> tell = [](const Answer&) {};
 
-  [[nodiscard]] double now() const;                  ///< of the scenario [s]
+  /// Called before what follows an answer's line is made: there is room for so many bytes.
+  /// \throws NoRoom to be asked again later; a Refusal
+  std::function<void(std::size_t bytes)> make_room = [](std::size_t) {};
+
+  [[nodiscard]] double now() const;  ///< of the scenario; the same for all of a command [s]
   [[nodiscard]] double at(double clock) const;       ///< the scenario's time at a time of the clock
   [[nodiscard]] double clock_at(double time) const;  ///< and back; by the clock alone
   /// A simulator of a scenario, or the one that was made of it not long ago.
   std::shared_ptr<const PingSimulator> simulator_of(LiveScenario::State state);
+  [[nodiscard]] const MemoryBudget& budget() const noexcept { return budget_; }
   /// For the next ping: sessions write into folders of their own, which nobody had before, so
   /// nothing is overwritten.
   [[nodiscard]] std::filesystem::path next_file();
+  /// The same for a scenario that is saved.
+  [[nodiscard]] std::filesystem::path next_save();
 
  private:
+  const std::filesystem::path& folder();
+
   struct Simulator {
     std::string key;
     std::shared_ptr<const PingSimulator> simulator;
@@ -79,6 +104,7 @@ class SessionState {
   std::shared_ptr<SharedPropagation> propagation_;  // what was traced
   std::list<Simulator> simulators_;                 // the latest used first
   std::filesystem::path folder_;                    // of this session's files
+  int saves_ = 0;
 };
 
 }  // namespace asdic::detail::serve

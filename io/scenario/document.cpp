@@ -7,9 +7,7 @@
 #include "io/text/toml_table.h"
 
 namespace asdic::detail::scenario {
-namespace {
 
-/// A file named anywhere in a fragment is relative to the fragment.
 void make_files_absolute(TomlValue& value, const std::filesystem::path& folder) {
   if (auto* array = std::get_if<TomlValue::Array>(&value.data))
     for (TomlValue& item : *array) make_files_absolute(item, folder);
@@ -21,6 +19,8 @@ void make_files_absolute(TomlValue& value, const std::filesystem::path& folder) 
         *name = std::filesystem::absolute(folder / *name).string();
     }
 }
+
+namespace {
 
 std::string file_named(const TomlValue& value) {
   const auto* text = std::get_if<std::string>(&value.data);

@@ -17,4 +17,7 @@ void describe_include(Fields& field, std::string& file);
 [[nodiscard]] TomlValue read_document(std::string_view text, const std::filesystem::path& path,
                                       std::span<const std::string> overrides);
 
+/// Files that are named anywhere in a tree are relative to a folder: then they are not any more.
+void make_files_absolute(TomlValue& value, const std::filesystem::path& folder);
+
 }  // namespace asdic::detail::scenario

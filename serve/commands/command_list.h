@@ -20,11 +20,16 @@ concept WaitingCommand = requires(const SessionState& session, const Command& co
   { C::wait(session, command) } -> std::same_as<double>;
 };
 
+/// One that computes and writes nothing worth a turn says `light = true`.
+template <class C>
+concept LightCommand = C::light;
+
 /// A command whose type is forgotten.
 struct AnyCommand {
   std::string_view name;
   Answer (*run)(SessionState& session, const Command& command);
   double (*wait)(const SessionState& session, const Command& command);
+  bool light = false;
 };
 
 template <ServeCommand C>
@@ -33,6 +38,7 @@ constexpr AnyCommand any_command() {
                     return 0.0;
                   }};
   if constexpr (WaitingCommand<C>) made.wait = &C::wait;
+  if constexpr (LightCommand<C>) made.light = true;
   return made;
 }
 

@@ -6,6 +6,7 @@ namespace asdic::detail::serve {
 /// Tells what a client may ask for.
 struct LimitsCommand {
   static constexpr std::string_view name = "limits";
+  static constexpr bool light = true;
   static Answer run(SessionState& session, const Command& command);
 };
 

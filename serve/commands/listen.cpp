@@ -20,7 +20,7 @@ void hand_out_now(SessionState& session) {
     if (listening.blocks()) listening.prepare(session, listening.next_end());
     auto block = listening.next();
     if (!block) break;
-    if (!session.tell(block_answer(std::move(*block), 0.0))) return;
+    session.tell(block_answer(std::move(*block), 0.0));
   }
   session.tell({.line = listening_ended_line(listening.time())});
 }
@@ -42,7 +42,7 @@ Answer ListenCommand::run(SessionState& session, const Command& command) {
                   refusal_text("seconds", "none", "how long, with --pace fast: there is no clock"));
   if (session.listening && session.listening->blocks())
     throw Refusal("value", refusal_text("listen", "a session that listens", "\"stop\" before it"));
-  const double now = by_the_clock ? session.at(command.received) : session.now();
+  const double now = session.now();
   if (!session.listening) {
     session.live.listen(0.0);
     session.listening = std::make_unique<Listening>(session.simulator_of(session.live.state()),

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "core/text.h"
 #include "serve/answers.h"
@@ -45,7 +47,7 @@ Answer update_stream(SessionState& session, const Command& command) {
   if (said)
     time = *said;
   else if (session.settings.pace.by_the_clock())
-    time = std::max(heard, session.at(command.received));
+    time = std::max(heard, session.now());
   time = std::max(time, session.live.changed());
   const LiveScenario before = session.live;
   const std::size_t targets = before.state().scenario.targets.size();
@@ -60,16 +62,35 @@ Answer update_stream(SessionState& session, const Command& command) {
   }
   session.live.forget_before(listening.oldest() - tow_memory(before.state().scenario));
   return {.line = update_line(command.id, session.live.state().scenario, time,
-                              session.clock() - command.received)};
+                              session.clock() - command.received, {}, {})};
+}
+
+/// What a time in the past does not do.
+std::vector<std::string> told_of_past(double time, double changed, double latest_ping) {
+  std::vector<std::string> told;
+  const std::string said = "time: " + to_text(time) + " s lies before the latest ";
+  if (time < changed)
+    told.push_back(said + "change, at " + to_text(changed) +
+                   " s: what this one moves goes on from there, all else stays as changed");
+  if (time < latest_ping)
+    told.push_back(said + "ping, at " + to_text(latest_ping) +
+                   " s: what that received stays as it was");
+  return told;
 }
 
 }  // namespace
 
 Answer UpdateCommand::run(SessionState& session, const Command& command) {
   if (session.listening) return update_stream(session, command);
-  session.live.update(command.fields, session.now());
+  const double now = session.now(), changed = session.live.changed();
+  session.live.update(command.fields, now);
+  const std::optional<double> said = number_said(command.fields, "time");
+  std::optional<double> behind;
+  if (session.settings.pace.by_the_clock()) behind = std::max(0.0, now - said.value_or(now));
+  std::vector<std::string> warnings;
+  if (said) warnings = told_of_past(*said, changed, session.latest_ping);
   return {.line = update_line(command.id, session.live.state().scenario, session.now(),
-                              session.clock() - command.received)};
+                              session.clock() - command.received, behind, warnings)};
 }
 
 }  // namespace asdic::detail::serve

@@ -11,6 +11,7 @@
 #include "core/doppler.h"
 #include "core/mixed_bits.h"
 #include "core/propagation_memory.h"
+#include "raytrace/parallel/stop.h"
 #include "reverb/scattering/forward_scatter.h"
 #include "sonar/echoes/one_leg.h"
 #include "sonar/echoes/target_response.h"
@@ -170,6 +171,7 @@ class EchoFinder {
     for (std::size_t i = 0; i < out.leg.arrivals.size(); ++i) {
       const Strike strike = this->strike(source, out, i, back.leg.arrivals, receiver);
       for (std::size_t j = 0; j < back.leg.arrivals.size(); ++j) {
+        stop_point();
         const std::optional<TwoWayPaths> pair = with_home(strike, back, j, receiver);
         if (!pair || (bounces_.surface > fewest_bounces && pair->home.time > latest_)) continue;
         const std::size_t first = result.scattered.size();
@@ -221,6 +223,7 @@ class EchoFinder {
         back.leg.channel < 0 ? most_listed : std::max<std::size_t>(1, most_listed / phones_.size());
     const Carried receiver = this->receiver(back.leg.channel);
     for (const auto& [i, j] : loudest_pairs(out.leg, back.leg, most)) {
+      stop_point();
       const Strike strike =
           this->strike(source, out, i, std::span(&back.leg.arrivals[j], 1), receiver);
       const std::optional<TwoWayPaths> pair = with_home(strike, back, j, receiver);

@@ -43,8 +43,19 @@ Vec3 source_of(const PingSimulator& simulator, int ping) {
 
 Leg leg_to(const PingSimulator& simulator, int ping, const AskedReceiver& receiver) {
   receiver.check();
+  return leg_to(simulator, geometry_of(simulator, ping), receiver);
+}
+
+std::vector<Leg> legs_of_targets(const PingSimulator& simulator, int ping,
+                                 std::optional<int> target, std::optional<double> frequency) {
+  return legs_of_targets(simulator, geometry_of(simulator, ping), target, frequency);
+}
+
+Leg leg_to(const PingSimulator& simulator, const PingGeometry& geometry,
+           const AskedReceiver& receiver) {
+  receiver.check();
   const Scenario& scenario = simulator.scenario();
-  const Vec3 platform = source_of(simulator, ping);
+  const Vec3 platform = geometry.source().position;
   const PropagationPaths& paths = simulator.paths();
   const double bearing = receiver.bearing  ? *receiver.bearing
                          : paths.layered() ? 0.0
@@ -68,12 +79,11 @@ Leg leg_to(const PingSimulator& simulator, int ping, const AskedReceiver& receiv
   return leg;
 }
 
-std::vector<Leg> legs_of_targets(const PingSimulator& simulator, int ping,
+std::vector<Leg> legs_of_targets(const PingSimulator& simulator, const PingGeometry& geometry,
                                  std::optional<int> target, std::optional<double> frequency) {
   const Scenario& scenario = simulator.scenario();
-  const PingGeometry geometry = geometry_of(simulator, ping);
   const double c = simulator.paths().speed_at(geometry.source().position);
-  const Transmitter transmitter = simulator.transmitter(ping);
+  const Transmitter transmitter = projector_of(scenario, geometry.sent());
   const double f =
       frequency.value_or(simulator.pulse(geometry.sent().transmitter).centre_frequency());
   const BeamPattern pattern(transmitter, c / f, c, geometry.source_heading());

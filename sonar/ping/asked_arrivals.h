@@ -23,6 +23,14 @@ struct AskedReceiver {
 /// \throws InputError ("ping") if there is no such
 [[nodiscard]] Vec3 source_of(const PingSimulator& simulator, int ping);
 
+/// The same, and the next function, of a ping whose place and time the schedule does not say.
+[[nodiscard]] Leg leg_to(const PingSimulator& simulator, const PingGeometry& geometry,
+                         const AskedReceiver& receiver);
+[[nodiscard]] std::vector<Leg> legs_of_targets(const PingSimulator& simulator,
+                                               const PingGeometry& geometry,
+                                               std::optional<int> target,
+                                               std::optional<double> frequency);
+
 /// Eigenrays from where a ping is sent to any depth and range.
 /// \throws InputError ("ping", "range", "depth", "source_depth", "bearing", "frequency")
 [[nodiscard]] Leg leg_to(const PingSimulator& simulator, int ping, const AskedReceiver& receiver);

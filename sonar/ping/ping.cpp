@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/huge_pages.h"
+#include "raytrace/parallel/stop.h"
 #include "raytrace/warnings/warnings.h"
 #include "reverb/power/reverberation_streams.h"
 #include "sonar/echoes/direct_blast.h"
@@ -339,7 +340,11 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
       record.phones.size() * record.recording.samples * record.recording.components();
   record.pressure.reserve(samples);
   prefer_huge_pages(record.pressure.data(), samples * sizeof(float));
-  record.pressure.assign(samples, 0.0F);
+  for (std::size_t silent = 0; silent < samples;) {  // gigabytes take seconds
+    stop_point();
+    silent = std::min(samples, silent + (std::size_t{1} << 24));
+    record.pressure.resize(silent);
+  }
   record.timings.synthesis = watch.lap();
 
   // The reverberation's samples of the last ping of this thread, if few: memory that the system

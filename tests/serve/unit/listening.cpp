@@ -36,7 +36,6 @@ class Heard {
       } else {
         told.push_back(line);
       }
-      return true;
     };
   }
   nlohmann::json operator()(const std::string& line) {

@@ -19,6 +19,7 @@
 #include "serve/latency.h"
 #include "serve/live_scenario.h"
 #include "serve/outbox.h"
+#include "serve/output_quota.h"
 #include "serve/pace.h"
 #include "serve/ping_schedule.h"
 #include "serve/token.h"
@@ -423,7 +424,8 @@ TEST(Outbox, GivesLinesAndSamplesByteByByte) {
   expected.append(reinterpret_cast<const char*>(samples.data()), 3 * sizeof(float));
   expected += "last\n";
   for (const std::size_t step : {1U, 2U, 5U, 100U}) {
-    Outbox out;
+    std::atomic<std::size_t> all = 0;
+    Outbox out(all);
     Answer first{.line = "{}", .samples = samples}, last{.line = "last"};
     const float* const where = first.samples.data();
     out.expect(first);
@@ -446,7 +448,57 @@ TEST(Outbox, GivesLinesAndSamplesByteByByte) {
     EXPECT_EQ(taken, expected);
     EXPECT_EQ(answers, 2U);
     EXPECT_EQ(out.bytes(), 0U);
+    EXPECT_EQ(all, 0U);
   }
+}
+
+// 100 bytes here and 150 in all. A lone answer may be longer; what was reserved becomes an answer.
+TEST(Outbox, HasRoomHereAndInAll) {
+  using Room = Outbox::Room;
+  std::atomic<std::size_t> all = 0;
+  {
+    Outbox one(all), other(all);
+    EXPECT_EQ(one.reserve(300, 100, 150), Room::here);
+    EXPECT_EQ(one.reserve(1, 100, 150), Room::not_yet);
+    EXPECT_EQ(other.reserve(1, 100, 150), Room::taken_by_others);
+    one.release(300);
+    EXPECT_EQ(one.reserve(60, 100, 150), Room::here);
+    EXPECT_EQ(one.reserve(41, 100, 150), Room::not_yet);
+    EXPECT_EQ(other.reserve(90, 100, 150), Room::here);
+    EXPECT_EQ(one.reserve(1, 100, 150), Room::taken_by_others);
+    EXPECT_EQ(all, 150U);
+    Answer answer{.line = "{}", .samples = std::vector<float>(15)};
+    one.expect(answer);
+    one.release(60);
+    EXPECT_EQ(one.bytes(), 63U);
+    EXPECT_EQ(all, 153U);
+    one.add(std::move(answer));
+    one.clear();
+    EXPECT_EQ(all, 90U);
+  }
+  EXPECT_EQ(all, 0U);  // what a connection leaves behind goes with it
+}
+
+TEST(OutputQuota, CountsWhatIsKept) {
+  const support::TemporaryDirectory folder;
+  OutputQuota quota;
+  const auto write = [&](const char* name, std::size_t expected, std::size_t bytes, bool keep) {
+    CountedFile file(quota, 1000, (folder / name).string(), expected);
+    EXPECT_GE(quota.written(), expected);
+    std::ofstream(folder / name) << std::string(bytes, 'x');
+    if (keep) file.keep();
+  };
+  write("one", 500, 400, true);
+  EXPECT_EQ(quota.written(), 400U);
+  EXPECT_THROW(write("two", 601, 1, true), Refusal);
+  EXPECT_FALSE(std::filesystem::exists(folder / "two"));
+  write("two", 600, 1, false);
+  EXPECT_FALSE(std::filesystem::exists(folder / "two"));
+  EXPECT_THROW(write("two", 600, 601, true), Refusal);
+  EXPECT_FALSE(std::filesystem::exists(folder / "two"));
+  EXPECT_EQ(quota.written(), 400U);
+  write("two", 600, 600, true);
+  EXPECT_EQ(quota.written(), 1000U);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <map>
 #include <memory>
 #include <thread>
 #include <vector>
@@ -29,7 +30,9 @@ class Client {
     if (::connect(end_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
       throw std::runtime_error("cannot connect");
   }
-  ~Client() { ::close(end_); }
+  ~Client() {
+    if (end_ >= 0) ::close(end_);
+  }
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
 
@@ -38,6 +41,10 @@ class Client {
     (void)::send(end_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
   }
   void finish() const { ::shutdown(end_, SHUT_WR); }
+  void hang_up() {
+    ::close(end_);
+    end_ = -1;
+  }
 
   /// The next line; null at the end.
   json receive() {
@@ -67,8 +74,10 @@ class Client {
 /// A server in a thread of its own.
 class Running {
  public:
-  explicit Running(const std::vector<std::string>& limits = {}, serve::Pace pace = {})
-      : server_(settings(limits, pace), {.socket = folder_ / "s", .port = {}, .token = ""}),
+  explicit Running(const std::vector<std::string>& limits = {}, serve::Pace pace = {},
+                   const std::vector<std::string>& overrides = {})
+      : server_(settings(limits, pace, overrides),
+                {.socket = folder_ / "s", .port = {}, .token = ""}),
         thread_([this](const std::stop_token& stop) { server_.run(stop); }) {}
 
   [[nodiscard]] std::filesystem::path socket() const { return folder_ / "s"; }
@@ -78,10 +87,11 @@ class Running {
   }
 
  private:
-  static serve::SessionSettings settings(const std::vector<std::string>& limits, serve::Pace pace) {
+  static serve::SessionSettings settings(const std::vector<std::string>& limits, serve::Pace pace,
+                                         const std::vector<std::string>& overrides) {
     signal(SIGPIPE, SIG_IGN);  // as the program does
     serve::SessionSettings all;
-    all.scenario = {.text = support::served_scenario, .path = "sea.toml", .overrides = {}};
+    all.scenario = {.text = support::served_scenario, .path = "sea.toml", .overrides = overrides};
     all.pace = pace;
     for (const std::string& one : limits) serve::set_limit(all.limits, one);
     return all;
@@ -91,6 +101,15 @@ class Running {
   serve::Server server_;
   std::jthread thread_;
 };
+
+/// Makes of a ping one that takes minutes: a million scatterers, one by one.
+const std::vector<std::string> heavy = {
+    "reverberation.azimuths=3600", "reverberation.synthesis=\"scatterers\"",
+    "propagation.max_surface_bounces=6", "propagation.max_bottom_bounces=6", "array.phones=64"};
+
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
 
 constexpr const char* hello = R"({"asdic": 1})";
 
@@ -193,6 +212,94 @@ TEST(Server, AnEndDoesNotWaitForTheClock) {
     EXPECT_EQ(said["id"], id);
     EXPECT_EQ(said["error"]["code"], "closing");
   }
+}
+
+// The one in hand and those that wait, by their ids, or all; the session goes on as if they had
+// never been: the next ping is the first, with its bits.
+TEST(Server, CommandsCanBeCancelled) {
+  Running running({}, {}, heavy);
+  Client client(running.socket());
+  EXPECT_EQ(client.ask(hello)["ok"], true);
+  client.say(R"({"id": 1, "command": "ping"})");
+  client.say(R"({"id": "two", "command": "ping"})");
+  client.say(R"({"id": 3, "command": "ping"})");
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  EXPECT_EQ(client.ask(R"({"id": 4, "command": "cancel", "of": "other"})")["cancelled"], 0);
+  const auto begin = std::chrono::steady_clock::now();
+  std::map<std::string, json> said;
+  const auto receive = [&] {
+    const json line = client.receive();
+    said[line["id"].dump()] = line;
+  };
+  client.say(R"({"id": 5, "command": "cancel", "of": "two"})");
+  for (int i = 0; i < 2; ++i) receive();
+  EXPECT_EQ(said["5"]["cancelled"], 1);
+  EXPECT_EQ(said["\"two\""]["error"]["code"], "cancelled");
+  client.say(R"({"id": 6, "command": "cancel", "of": 1})");
+  for (int i = 0; i < 2; ++i) receive();
+  EXPECT_EQ(said["6"]["cancelled"], 1);
+  EXPECT_EQ(said["1"]["error"]["code"], "cancelled");
+  client.say(R"({"id": 7, "command": "cancel"})");
+  for (int i = 0; i < 2; ++i) receive();
+  EXPECT_EQ(said["3"]["error"]["code"], "cancelled");
+  EXPECT_LT(seconds_since(begin), 10.0);
+  EXPECT_EQ(client.ask(R"({"id": 8, "command": "cancel", "off": 3})")["error"]["code"], "value");
+  EXPECT_EQ(client.ask(R"({"id": 9, "command": "cancel", "of": [3]})")["error"]["code"], "value");
+  EXPECT_EQ(client.ask(R"({"command": "state"})")["next_ping"], 1);
+}
+
+// So can one that waits for its time.
+TEST(Server, AWaitCanBeCancelled) {
+  Running running({}, {.factor = 1.0});
+  Client client(running.socket());
+  EXPECT_EQ(client.ask(hello)["ok"], true);
+  client.say(R"({"id": 1, "command": "ping", "time": 300})");
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  const json one = client.ask(R"({"id": 2, "command": "cancel", "of": 1})");
+  const json other = client.receive();
+  EXPECT_EQ((one["id"] == 1 ? one : other)["error"]["code"], "cancelled");
+  EXPECT_EQ(client.ask(R"({"command": "ping"})")["ping"], 1);
+}
+
+TEST(Server, ACommandHasItsTime) {
+  Running running({"command_seconds=1"}, {}, heavy);
+  Client client(running.socket());
+  EXPECT_EQ(client.ask(hello)["ok"], true);
+  const auto begin = std::chrono::steady_clock::now();
+  const json said = client.ask(R"({"command": "ping"})");
+  EXPECT_EQ(said["error"]["code"], "limit");
+  EXPECT_EQ(said["error"]["message"].get<std::string>().substr(0, 15), "command_seconds");
+  EXPECT_LT(seconds_since(begin), 10.0);
+  EXPECT_EQ(client.ask(R"({"command": "state"})")["next_ping"], 1);
+}
+
+TEST(Server, AClientHasItsTime) {
+  Running running({"client_seconds=1"}, {}, heavy);
+  Client client(running.socket());
+  EXPECT_EQ(client.ask(hello)["ok"], true);
+  for (int i = 0; i < 2; ++i) {
+    const json said = client.ask(R"({"command": "ping"})");
+    EXPECT_EQ(said["error"]["code"], "limit");
+    EXPECT_NE(said["error"]["message"].get<std::string>().find("client_seconds"),
+              std::string::npos);
+  }
+  EXPECT_EQ(client.ask(R"({"command": "state"})")["ok"], true);
+}
+
+// One that is gone does not compute on; and another's state needs no turn.
+TEST(Server, OneThatIsGoneIsCalledOff) {
+  Running running({}, {}, heavy);
+  Client gone(running.socket()), other(running.socket());
+  EXPECT_EQ(gone.ask(hello)["ok"], true);
+  EXPECT_EQ(other.ask(hello)["ok"], true);
+  gone.say(R"({"command": "ping"})");
+  gone.say(R"({"command": "ping"})");
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  EXPECT_EQ(other.ask(R"({"command": "state"})")["ok"], true);
+  gone.hang_up();
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_EQ(other.ask(R"({"command": "update", "reverberation": 1})")["error"]["code"], "value");
+  EXPECT_LT(seconds_since(begin), 10.0);
 }
 
 TEST(Server, TurnsAwayOneTooMany) {

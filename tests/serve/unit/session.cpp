@@ -78,6 +78,32 @@ TEST(Session, APingBeforeTheLatestChangeIsTold) {
   EXPECT_THAT(told(R"({"command": "ping", "time": 30})"), HasSubstr("latest change"));
 }
 
+TEST(Session, AnUpdateInThePastIsTold) {
+  Served served;
+  const auto told = [&](const char* line) {
+    const auto said = served(line);
+    EXPECT_EQ(said["ok"], true) << said;
+    EXPECT_FALSE(said.contains("behind"));  // there is no clock
+    return said.value("warnings", nlohmann::json::array()).dump();
+  };
+  EXPECT_THAT(told(R"({"command": "update", "time": 100, "wind_speed": 3})"),
+              Not(HasSubstr("lies")));
+  EXPECT_THAT(told(R"({"command": "update", "time": 99, "wind_speed": 4})"),
+              HasSubstr("time: 99 s lies before the latest change, at 100 s"));
+  EXPECT_EQ(served(R"({"command": "ping", "time": 200})")["ok"], true);
+  EXPECT_THAT(told(R"({"command": "update", "time": 150, "wind_speed": 3})"),
+              HasSubstr("time: 150 s lies before the latest ping, at 200 s"));
+  EXPECT_THAT(told(R"({"command": "update", "time": 200, "wind_speed": 4})"),
+              Not(HasSubstr("lies")));
+  EXPECT_THAT(told(R"({"command": "update", "wind_speed": 5})"), Not(HasSubstr("lies")));
+  serve::SessionSettings settings;
+  settings.pace = {.factor = 2.0};
+  Served live(support::served_scenario, settings);
+  live.clock += 10.0;
+  EXPECT_EQ(live(R"({"command": "update", "time": 19.5, "wind_speed": 5})")["behind"], 0.5);
+  EXPECT_EQ(live(R"({"command": "update", "wind_speed": 5})")["behind"], 0.0);
+}
+
 // 3 km away and back at 1500 m/s: 4 s. TL = 20 log 3000, RL = SL − 2 TL + TS.
 TEST(Session, TellsTheEchoOfEachTarget) {
   Served served;

@@ -7,6 +7,7 @@ not grow with the number of pings.
     ASDIC=build/ci/bin/asdic serve.py [PINGS]        default 150; scripts/deep_check.sh takes 10000
 """
 import contextlib
+import io
 import json
 import os
 import re
@@ -343,6 +344,292 @@ def ends():
         thread.join()
 
 
+HEAVY = ["--set", "reverberation.azimuths=3600", "--set", 'reverberation.synthesis="scatterers"',
+         "--set", "propagation.max_surface_bounces=6", "--set", "propagation.max_bottom_bounces=6",
+         "--set", "array.phones=64"]  # a ping takes minutes
+
+
+def good_manners():
+    """Calling off, by a command, by going and by the clock; turns."""
+    with server("--socket", "sonar.sock", "--tcp", "0", *HEAVY, listens=2,
+                ASDIC_TOKEN="0123456789abcdef") as (_, said):
+        port = int(re.search(r"127\.0\.0\.1:(\d+)", said).group(1))
+        ways = {"Unix": lambda: Client.unix("sonar.sock"),
+                "TCP": lambda: Client.tcp(port, "0123456789abcdef")}
+        light = {"time": 0.0, "noise": {"spectral_level_db": 41}}
+        took = {}
+        for name, join in ways.items():
+            gone = join()  # killed in the middle of a ping: the next one is served at once
+            gone.send("ping")
+            time.sleep(0.3)
+            other = join()
+            begin = time.monotonic()
+            gone._close[0].close()
+            gone.close()
+            other.update(**light)
+            took[name] = time.monotonic() - begin
+            check(took[name] < 10, f"a client that is gone holds up others for {took[name]} s")
+
+            # One that has ended its half waits for its answers, and is served.
+            half = join()
+            half.send("ping")
+            half.send("update", **light)
+            half._close[0].shutdown(socket.SHUT_WR)
+            time.sleep(0.7)
+            begin = time.monotonic()
+            other.send("update", **light)
+            check(other._close[0] is not None, "it waits")
+            half._close[0].settimeout(0.5)
+            with contextlib.suppress(TimeoutError):
+                check(not half._reader.readline(), "a heavy ping is done too soon")
+                raise AssertionError("one that has ended its half is not served any more")
+            half._close[0].close()
+            half.close()
+            check(other.receive()[0]["ok"], "after that the other has its turn")
+            took[name + " after its half"] = time.monotonic() - begin
+
+            sent = other.send("ping")
+            time.sleep(0.2)
+            begin = time.monotonic()
+            other.cancel(sent)
+            said = [other.receive()[0] for _ in range(2)]
+            check({a["id"]: a.get("error", {}).get("code") for a in said} ==
+                  {sent: "cancelled", sent + 1: None}, said)
+            took["cancel by " + name] = time.monotonic() - begin
+            check(took["cancel by " + name] < 5, took)
+            other.quit()
+    print("called off after", {name: round(seconds, 2) for name, seconds in took.items()}, "s")
+
+    # One that floods the server does not keep another waiting for more than a turn or so.
+    with server("--socket", "sonar.sock") as (_, _):
+        greedy, other = Client.unix("sonar.sock", when_full="wait"), Client.unix("sonar.sock")
+        count = 300
+        for _ in range(count):
+            greedy.send("ping")
+        greedy.receive()
+        for _ in range(10):
+            other.ping()
+        greedy._close[0].settimeout(0.0)
+        left = count - 1
+        with contextlib.suppress(BlockingIOError):
+            while greedy._reader.readline():
+                left -= 1
+        check(left > count // 2, f"ten pings of another waited for {count - left} of one")
+
+
+def asked(*words):
+    """What a command of asdic's prints as JSON, without what a server does not tell."""
+    done = subprocess.run([ASDIC, *words, "--json"], capture_output=True, text=True, check=True)
+    return without(json.loads(done.stdout))
+
+
+def without(told):
+    for key in ("filetype", "scenario", "output", "id", "ok", "time", "warnings"):
+        told.pop(key, None)
+    return told
+
+
+def the_model_by_itself():
+    """Eigenrays, rays, fields and levels: the numbers of the commands of asdic's, and of a file."""
+    run = {"frequency": 500.0, "receivers": {"depth": {"first": 50.0, "last": 900.0, "count": 8},
+                                             "range": {"first": 100.0, "last": 4000.0, "count": 9}}}
+    table = ("{frequency=500.0, receivers={depth={first=50.0, last=900.0, count=8}, "
+             "range={first=100.0, last=4000.0, count=9}}}")
+    with Client.start("sea.toml", program=ASDIC) as client:
+        for ping in (1, 2):
+            told = client.arrivals()
+            check(told["time"] == 10.0 * (ping - 1), told["time"])
+            check(without(told) == asked("arrivals", "sea.toml", "--ping", str(ping)), "other paths")
+            client.ping(deliver="none")
+        check(without(client.arrivals(time=0.0, leg="array", target="rock"))["legs"] ==
+              asked("arrivals", "sea.toml", "--leg", "array")["legs"], "legs back")
+        receiver = client.arrivals(time=0.0, range=2000.0, receiver_depth=300.0, source_depth=20.0,
+                                   bearing_deg=40.0, frequency=700.0)
+        check(without(receiver)["legs"] == asked(
+            "arrivals", "sea.toml", "--range", "2000", "--receiver-depth", "300", "--source-depth",
+            "20", "--bearing", "40", "--frequency", "700")["legs"], "paths to a receiver")
+        check(without(client.rays()) == asked("rays", "sea.toml"), "other rays")
+        check(without(client.rays(from_deg=-3.3, to_deg=7.1, count=5, range=9000.0, bounces=2,
+                                  source_depth=70.0)) ==
+              asked("rays", "sea.toml", "--from", "-3.3", "--to", "7.1", "--count", "5", "--range",
+                    "9000", "--bounces", "2", "--source-depth", "70"), "another fan")
+        check(without(client.rays(elevations_deg=[1.1, -4.0]))["rays"] ==
+              asked("rays", "sea.toml", "--elevations", "1.1,-4.0")["rays"], "listed elevations")
+        answer, pressure = client.field(run=run)
+        told = asked("field", "sea.toml", "--set", f"run={table}", "-o", "field.h5")
+        check({key: answer[key] for key in told} == told, "another summary")
+        with h5py.File("field.h5") as file:
+            check(pressure.tobytes() == file["pressure"][...].tobytes(), "another field")
+            check(answer["depth"] == list(file["depth"][...]), "depths")
+
+        # A platform that goes on: from where it is.
+        client.update(time=20.0, platform={"position": [0.0, 0.0, 400.0], "velocity": [1, 0, 0]})
+        check(client.rays()["source_depth"] == 400.0, "where the platform is")
+        check(client.field(run=run)[1].tobytes() == client.field(
+            run={**run, "source": {"depth": 400.0}})[1].tobytes(), "a field from there")
+
+        for code, work in {
+                "limit": [lambda: client.rays(count=2001), lambda: client.field(run={
+                    **run, "receivers": {"depth": {"first": 1, "last": 900, "count": 2000},
+                                         "range": {"first": 1, "last": 900, "count": 2000}}})],
+                "scenario": [lambda: client.rays(source_depth=1000.5),
+                             lambda: client.arrivals(range=100.0, receiver_depth=1001.0)],
+                "value": [lambda: client.rays(from_deg=90), lambda: client.rays(to=3),
+                          lambda: client.rays(range=-1), lambda: client.arrivals(range=100.0),
+                          lambda: client.arrivals(target="x"), lambda: client.arrivals(leg="up"),
+                          lambda: client.field(run=3), lambda: client.field(runs=run),
+                          lambda: client.field(run={**run, "task": "rays"}),
+                          lambda: client.field(run={"frequency": -1.0}),
+                          lambda: client.levels(deliver="none")]}.items():
+            for one in work:
+                refused(code, one)
+        refused("scenario", client.field)  # the scenario has no run
+
+    with Client.start("sea.toml", program=ASDIC) as client:
+        for ping in range(3):
+            answer, levels = client.levels()
+            with h5py.File("reference.h5") as file:
+                for row, name in enumerate(answer["levels"]["rows"]):
+                    check(levels[row].tobytes() == file[f"levels/{name}"][ping].tobytes(), name)
+                check(answer["levels"]["time_step"] == file["levels/echo"].attrs["time_step"], answer)
+                check(answer["levels"]["time_start"] == file["levels/echo"].attrs["time_start"], answer)
+            check(client.ping(deliver="none").answer["ping"] == ping + 1, "it is not counted")
+
+
+def slow_readers():
+    """What readers do not take is bounded, in all; and so are files."""
+    large = ["--set", "reverberation.enabled=false", "--set", "array.phones=64", "--set", "pings.recording_duration=30.0", "--limit",
+             "answer_bytes=20000000", "--limit", "total_answer_bytes=30000000"]
+    with server("--socket", "sonar.sock", *large) as (process, _):
+        with Client.unix("sonar.sock") as client:
+            ping = client.ping(deliver="samples")
+            one = ping.samples.nbytes
+            check(5e6 < one < 20e6, one)
+        before = rss(process)
+        deaf = [Client.unix("sonar.sock", when_full="wait") for _ in range(6)]
+        for client in deaf:
+            for _ in range(8):
+                client.send("ping", deliver="samples")
+        with Client.unix("sonar.sock") as other:  # told so; what needs no room is done
+            until = time.monotonic() + 30
+            code = None
+            while code != "busy" and time.monotonic() < until:
+                other.ping(deliver="none")
+                try:
+                    other.ping(deliver="samples")
+                except Refused as no:
+                    code = no.code
+            check(code == "busy", "answers of 48 pings of 8 MB are kept")
+        time.sleep(1.0)
+        after = rss(process)
+        check(after - before < 110000, f"{before} kB, then {after} kB for at most 30 MB of answers")
+        for client in deaf[1:]:
+            client.close()
+        for _ in range(8):  # then there is room again
+            check(deaf[0].receive()[1].nbytes == one, "samples")
+        deaf[0].close()
+    print(f"slow readers: {before} kB before, {after} kB with 48 pings of {one} bytes not taken")
+
+    os.mkdir("quota")
+    with Client.start("sea.toml", "--output-dir", "quota", "--limit", "output_bytes=5000000",
+                      program=ASDIC) as client:
+        files = []
+        with contextlib.suppress(Refused):
+            for _ in range(100):
+                files.append(client.ping().answer["file"])
+        refused("limit", client.ping)
+        check(client.ping(deliver="none").answer["ping"] == len(files) + 1, "it was not begun")
+    sizes = [os.path.getsize(file) for file in Path("quota").rglob("*.h5")]
+    check(len(sizes) == len(files) > 3 and sum(sizes) <= 5e6, sizes)
+
+
+class Told(Client):
+    """What a replay prints, as a client would have had it."""
+
+    def __init__(self, printed):
+        self._reader = io.BytesIO(printed)
+
+    def all(self):
+        while self._reader.tell() < len(self._reader.getbuffer()):
+            yield self.receive()
+
+
+def replayed(log, *more):
+    done = subprocess.run([ASDIC, "serve", "sea.toml", "--replay", log, *more], capture_output=True)
+    check(done.returncode == 0, done.stderr)
+    return [samples.tobytes() for _, samples in Told(done.stdout).all() if samples is not None]
+
+
+def saved_and_replayed():
+    """A saved scenario has the next ping's bits, and a log those of all of them."""
+    os.mkdir("saves")
+
+    def check_save(client, saved, **ping):
+        samples = client.ping(deliver="samples", **ping)
+        number = samples.answer["ping"]
+        check(saved["ping"] == number and saved["time"] == samples.answer["time"], saved)
+        subprocess.run([ASDIC, "ping", saved["file"], "-q", "--force", "-o", "saved.h5"], check=True)
+        with h5py.File("saved.h5") as file:
+            check(file["ping_time"][number - 1] == saved["time"], "another time")
+            check(file["pressure"][number - 1].tobytes() == samples.samples.tobytes(),
+                  f"ping {number} of what was saved has other bits")
+        return samples.samples
+
+    heard = []
+    with Client.start("sea.toml", "--output-dir", "saves", "--tell-scenario", "--log", "log.jsonl",
+                      program=ASDIC) as client:
+        heard.append(check_save(client, client.save()))
+        client.update(wind_speed=12, targets={"strength_db": 20}, array={"spacing": 0.7})
+        heard.append(check_save(client, client.save()))
+        client.update(platform={"position": [10.0, 5.0, 250.0], "heading_deg": 30, "speed": 3.1})
+        for _ in range(3):  # beyond the file's schedule
+            heard.append(check_save(client, client.save()))
+        refused("value", lambda: client.update(wind_speed=-1))
+        client.ping(time=47.3)
+        heard.append(check_save(client, client.save()))  # not of the schedule any more
+        text = client.save(deliver="text")
+        Path("text.toml").write_text(text["toml"])
+        heard.append(check_save(client, {**text, "file": "text.toml"}))
+        refused("value", lambda: client.save(deliver="samples"))
+        client.quit()
+    with Client.start("sea.toml", program=ASDIC) as client:
+        refused("value", client.save)  # it has no place, and may not be told
+    check(replayed("log.jsonl", "--output-dir", "saves", "--tell-scenario") ==
+          [one.tobytes() for one in heard], "a replay has other bits")
+    lines = [json.loads(line) for line in Path("log.jsonl").read_text().splitlines()]
+    check(lines[0]["asdic_log"] == 1 and lines[0]["pace"] == "fast", lines[0])
+    check([line["ok"] for line in lines[1:]].count(False) == 2, "refused ones are told as that")
+    check(all(0 <= line["received"] <= line["begun"] <= line["done"] for line in lines[1:]), lines)
+
+    # By the clock, several clients, one of them called off: a replay at once has the same bits.
+    heard = []
+    with server("--socket", "sonar.sock", "--pace", "20", "--log", "clock.jsonl") as (_, _):
+        with Client.unix("sonar.sock") as one, Client.unix("sonar.sock") as two:
+            for step in range(3):
+                for client in (one, two):
+                    client.update(platform={"heading_deg": 40 * step, "speed": 4})
+                    heard.append(client.ping(deliver="samples").samples.tobytes())
+                    time.sleep(0.02)
+            waits = one.send("ping", time=5000.0)
+            one.cancel(waits)
+            for _ in range(2):
+                one.receive()
+            heard.append(one.ping(deliver="samples", time=one.state()["time"] + 2.0).samples.tobytes())
+    check(replayed("clock.jsonl") == heard, "a replay of a session by the clock has other bits")
+    with open("clock.jsonl", "a") as log:
+        log.write('{"session": 1, "ok": tr')  # torn by a kill
+    check(replayed("clock.jsonl") == heard, "a torn line")
+    for arguments, said in (
+            (["--log", "clock.jsonl"], "which is there, expected a new file"),
+            (["--replay", "sea.toml"], "sea.toml:1: found another line"),
+            (["--replay", "nothing"], "cannot be read"),
+            (["--replay", "log.jsonl", "--set", "seed=3"], "another scenario (overrides)"),
+            (["--replay", "log.jsonl", "--pace", "real"], "expected none of them")):
+        done = subprocess.run([ASDIC, "serve", "sea.toml", *arguments], stdin=subprocess.DEVNULL,
+                              capture_output=True, text=True)
+        check(done.returncode == 2 and said in done.stderr, done)
+
+
 def does_not_grow(count):
     """Updates and pings, as a vehicle sends them."""
     with server("--socket", "sonar.sock", "--limit", "kept_bytes=1000000") as (process, _):
@@ -378,7 +665,8 @@ def main():
         Path("sea.toml").write_text(SCENARIO)
         pings = reference()
         for work in (lambda: by_standard_streams(pings), lambda: by_unix_socket(pings),
-                     lambda: by_tcp(pings), in_time, ends, lambda: does_not_grow(count)):
+                     lambda: by_tcp(pings), in_time, ends, good_manners,
+                     the_model_by_itself, slow_readers, saved_and_replayed, lambda: does_not_grow(count)):
             work()
         os.chdir("/")
     print("served by standard streams, Unix socket and TCP: all as asked")
