@@ -36,15 +36,17 @@ struct ProcessOptions {
   bool json = false, quiet = false, no_maps = false, no_file = false, force = false;
 };
 
-/// By default nothing is detected while the longest of the pulses is sent.
-ProcessingSettings settings_of(const ProcessOptions& options,
+/// By default nothing is detected while the longest of the pulses is sent; of a continuous record
+/// the receiver decides, transmitter by transmitter and array by array.
+ProcessingSettings settings_of(const ProcessOptions& options, const Scenario& scenario,
                                const std::vector<Replica>& replicas) {
   ProcessingSettings settings;
   options.receiver.read(settings);
   options.receiver.read(settings.tracker);
   double longest = 0.0;
   for (const Replica& replica : replicas) longest = std::max(longest, replica.duration());
-  if (!settings.detector.first_time) settings.detector.first_time = longest;
+  if (!settings.detector.first_time && !scenario.pings.continuous)
+    settings.detector.first_time = longest;
   return settings;
 }
 
@@ -94,7 +96,7 @@ int process(const ProcessOptions& options) {
   {
     const PingRecordings recordings(options.file, scenario);
     std::vector<Replica> replicas = recordings.replicas();
-    const ProcessingSettings settings = settings_of(options, replicas);
+    const ProcessingSettings settings = settings_of(options, recordings.scenario(), replicas);
     first = replicas.front();
     const int count = options.ping ? 1 : static_cast<int>(recordings.pings());
     try {

@@ -121,6 +121,13 @@ std::string limit_text(const ProcessedRun& run, const Scenario& scenario) {
   return text;
 }
 
+/// What the receiver did to the records, a line each.
+std::string notes_text(const ProcessedRun& run) {
+  std::string text;
+  for (const std::string& note : run.notes) text += note + '\n';
+  return text;
+}
+
 /// JSON has no NaN: null.
 nlohmann::ordered_json value(double x) {
   return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json(nullptr);
@@ -143,7 +150,7 @@ std::string process_report(const ProcessedRun& run, const Scenario& scenario, do
       count_of(pings, "ping"), count_of(static_cast<std::size_t>(sum.detections), "detection"),
       whose, count_of(static_cast<std::size_t>(sum.false_alarms), "false alarm"), sum.hits,
       sum.misses, count_of(run.tracks.size(), "track"), duration(seconds));
-  return text + limit_text(run, scenario);
+  return text + notes_text(run) + limit_text(run, scenario);
 }
 
 std::string process_json(const ProcessedRun& run, const Scenario& scenario,
@@ -204,6 +211,7 @@ std::string process_json(const ProcessedRun& run, const Scenario& scenario,
                              {"hits", sum.hits},
                              {"misses", sum.misses},
                              {"false_alarms", sum.false_alarms},
+                             {"notes", run.notes},
                              {"pings", pings},
                              {"tracks", tracks}};
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';

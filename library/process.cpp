@@ -113,7 +113,7 @@ std::vector<detail::Replica> PingsAtHand::replicas() const {
   return result;
 }
 
-detail::ProcessingSettings settings_of(const Receiving& asked,
+detail::ProcessingSettings settings_of(const Receiving& asked, bool continuous,
                                        const std::vector<detail::Replica>& replicas) {
   detail::ProcessingSettings s;
   s.max_speed = asked.max_speed;
@@ -130,8 +130,13 @@ detail::ProcessingSettings settings_of(const Receiving& asked,
                          .across_beams = asked.across_beams};
   double longest = 0.0;
   for (const detail::Replica& replica : replicas) longest = std::max(longest, replica.duration());
-  detector.first_time = asked.from.value_or(longest);
+  detector.first_time = asked.from;
+  if (!asked.from && !continuous) detector.first_time = longest;
   detector.last_time = asked.until;
+  detector.sub_bands = asked.sub_bands;
+  if (asked.cancel_direct_blast)
+    s.cancel_direct_blast =
+        *asked.cancel_direct_blast ? detail::BlastCancelling::on : detail::BlastCancelling::off;
   return s;
 }
 
@@ -180,7 +185,8 @@ Track shown(const detail::ProcessedTrack& made, const detail::EarthPlaces& earth
 
 Processed processed(const detail::ReceivedPings& pings, std::vector<detail::Replica> replicas,
                     const Receiving& receiving, const Watch& watch) {
-  const detail::ProcessingSettings settings = settings_of(receiving, replicas);
+  const detail::ProcessingSettings settings =
+      settings_of(receiving, pings.scenario().pings.continuous, replicas);
   const detail::PingProcessor processor(pings.scenario(), std::move(replicas), settings);
   const detail::ProcessedRun run = detail::process_pings(
       pings, processor, {},
@@ -188,7 +194,7 @@ Processed processed(const detail::ReceivedPings& pings, std::vector<detail::Repl
         if (watch.progress) watch.progress(done, static_cast<int>(pings.pings()));
       },
       [&] { return !watch.stop.stop_requested(); });
-  Processed result{.warnings = run.warnings, .on_earth = run.earth.known()};
+  Processed result{.warnings = run.warnings, .notes = run.notes, .on_earth = run.earth.known()};
   for (const detail::ProcessedPing& ping : run.pings)
     for (std::size_t i = 0; i < ping.array.result.detections.size(); ++i)
       result.detections.push_back(

@@ -25,8 +25,8 @@ double top_of(double before, double here, double after) {
   return bend < 0.0 ? std::clamp(0.5 * (before - after) / bend, -0.5, 0.5) : 0.0;
 }
 
-double log_power(std::complex<float> x) {
-  return std::log(static_cast<double>(std::norm(x)) + std::numeric_limits<double>::min());
+double log_power(float power) {
+  return std::log(static_cast<double>(power) + std::numeric_limits<double>::min());
 }
 
 std::vector<Vec3> about(const Vec3& middle, std::span<const Vec3> phones) {
@@ -74,16 +74,16 @@ class Search {
             beam_grid(shape_, wavelength_, settings.lowest_elevation, settings.highest_elevation),
             baseband, dopplers.size(), settings)),
         weights_(shading(phones_, settings.shading == Shading::hann)),
-        bank_(replica, dopplers, baseband),
-        estimator_(settings.normaliser, bank_.sample_rate() / replica.noise_bandwidth()),
+        bank_(replica, dopplers, baseband, settings.sub_bands),
+        cell_(bank_.sample_rate() / replica.noise_bandwidth() * settings.sub_bands),
+        estimator_(settings.normaliser, cell_, settings.sub_bands),
         channels_(channel_spectra(baseband)),
         across_(shape_, phones_, weights_, grid_.looks, wavelength_,
-                settings.normaliser.across_beams ? bank_.filters() : 0, bank_.samples(),
-                bank_.sample_rate() / replica.noise_bandwidth()),
+                settings.normaliser.across_beams ? bank_.filters() : 0, bank_.samples(), cell_),
         pointing_(baseband, phones_, sound_speed, replica, shape_, weights_, grid_.spacing,
-                  dopplers.front()),
-        doppler_cell_(doppler_cell(replica)),
-        ridge_(-doppler_answer(replica, 1.0 + 0.25 * doppler_cell_).delay /
+                  dopplers.front(), settings.sub_bands),
+        doppler_cell_(doppler_cell(replica, settings.sub_bands)),
+        ridge_(-doppler_answer(replica, 1.0 + 0.25 * doppler_cell_, settings.sub_bands).delay /
                (0.25 * doppler_cell_)) {}
 
   DetectorResult run(std::span<const Probe> probes, const std::function<bool()>& proceed) {
@@ -137,7 +137,7 @@ class Search {
               });
     result.grid = grid_;
     for (std::size_t f = 0; f < bank_.filters(); ++f) result.dopplers.push_back(bank_.doppler(f));
-    result.time_cell = 1.0 / replica_.noise_bandwidth();
+    result.time_cell = settings_.sub_bands / replica_.noise_bandwidth();
     result.doppler_cell = doppler_cell_;
     result.delay_per_doppler = ridge_;
     return result;
@@ -185,8 +185,7 @@ class Search {
       work.threshold.resize(n);
       work.doppler_time.resize(bank_.filters() * columns, 0.0F);
       for (std::size_t f = 0; f < bank_.filters(); ++f) {
-        bank_.filter(f, beams.beam(b), work.out.data());
-        for (std::size_t i = 0; i < n; ++i) work.power[i] = std::norm(work.out[i]);
+        bank_.power(f, beams.beam(b), work.out.data(), work.power.data());
         compare_over_time(grid_.looks[b], work);
         pick(b, f, work, found[b]);
         if (settings_.normaliser.across_beams) across_.set(f, b, work.power);
@@ -274,10 +273,11 @@ class Search {
 
   /// Between the samples, filters and beams.
   Detection refine(const Peak& peak, const BeamSpectra& beams) const {
-    FftBuffer<std::complex<float>> out(bank_.work());
+    FftBuffer<std::complex<float>> work(bank_.work());
+    std::vector<float> out(bank_.samples());
     const std::size_t i = peak.sample, last = bank_.filters() - 1;
     const auto filtered = [&](std::size_t f) {
-      bank_.filter(f, beams.beam(peak.beam), out.data());
+      bank_.power(f, beams.beam(peak.beam), work.data(), out.data());
       return out[i];
     };
     double filter_offset = 0.0;
@@ -326,6 +326,7 @@ class Search {
   BeamGrid grid_;
   std::vector<double> weights_;
   MatchedFilterBank bank_;
+  double cell_;  // samples of its output
   BackgroundEstimator estimator_;
   BeamSpectra channels_;
   AcrossBeams across_;

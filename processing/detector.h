@@ -35,6 +35,7 @@ struct DetectorSettings {
   Shading shading = Shading::none;
   MvdrSettings mvdr;
   NormaliserSettings normaliser;
+  int sub_bands = 1;  ///< that a pulse is cut into; their powers are averaged
   double lowest_elevation = -0.5 * pi, highest_elevation = 0.5 * pi;  ///< of planes, volumes [rad]
   std::optional<double> first_time;  ///< nothing is detected before [s]; none: all of the record
   std::optional<double> last_time;   ///< nor after; none: to the end

@@ -95,6 +95,11 @@ std::complex<float> carrier_rotation(const Baseband& b, double recorded_carrier,
 
 }  // namespace
 
+double ListeningBand::gain(double frequency) const noexcept {
+  const double x = std::clamp((std::abs(frequency - centre) / width - 0.5) / edge, 0.0, 1.0);
+  return 0.5 + 0.5 * std::cos(pi * x);
+}
+
 Baseband to_baseband(std::span<const float> pressure, std::size_t channels, double sample_rate,
                      double start, const ListeningBand& band, double silence) {
   const std::size_t samples = channels == 0 ? 0 : pressure.size() / channels;

@@ -11,6 +11,9 @@ namespace asdic::detail {
 struct ListeningBand {
   double centre = 0.0;  ///< [Hz]
   double width = 0.0;   ///< that passes unchanged [Hz]; 0 after a fifth more
+
+  /// Of the filter. \param frequency  [Hz]
+  [[nodiscard]] double gain(double frequency) const noexcept;
 };
 
 /// Filters every phone to a band and shifts it to frequency zero: p₊(t)·e^{−i2πf_c t}, |·| the peak

@@ -46,17 +46,52 @@ struct CrossSpectrum {
 
 }  // namespace
 
-DopplerAnswer doppler_answer(const Replica& replica, double doppler) {
+std::vector<double> sub_band_edges(const Replica& replica, int parts) {
+  std::vector<double> edges;
+  if (parts < 2) return edges;
+  // The spectrum of a pulse of length T is told by values 1/T apart.
+  const double spacing = 0.125 / replica.duration(), room = 0.5 * replica.bandwidth();
+  const double first = replica.lowest_frequency() - room;
+  const auto count =
+      static_cast<std::size_t>(std::ceil((replica.highest_frequency() + room - first) / spacing));
+  std::vector<double> sums{0.0};
+  for (std::size_t k = 0; k < count; ++k)
+    sums.push_back(sums.back() +
+                   std::norm(replica.spectrum(first + (static_cast<double>(k) + 0.5) * spacing)));
+  std::size_t k = 0;
+  for (int part = 1; part < parts; ++part) {
+    const double wanted = sums.back() * part / parts;
+    while (sums[k + 1] < wanted) ++k;
+    edges.push_back(
+        first + (static_cast<double>(k) + (wanted - sums[k]) / (sums[k + 1] - sums[k])) * spacing);
+  }
+  return edges;
+}
+
+DopplerAnswer doppler_answer(const Replica& replica, double doppler, int sub_bands) {
   const CrossSpectrum cross(replica, doppler);
   const std::size_t n = fast_fft_length(4 * cross.bins.size());
   FftBuffer<std::complex<double>> work(n);
-  std::copy(cross.bins.begin(), cross.bins.end(), work.data());
-  ComplexFft<double>(n).inverse(work.data());
+  std::vector<double> power(n, 0.0);
+  std::vector<double> edges = sub_band_edges(replica, sub_bands);
+  edges.push_back(infinity);
+  std::size_t from = 0;
+  for (const double edge : edges) {  // each by its own energy, which is E/parts: their mean
+    std::size_t to = from;
+    while (to < cross.bins.size() && cross.first + static_cast<double>(to) * cross.spacing < edge)
+      ++to;
+    work.clear();
+    std::copy(cross.bins.begin() + static_cast<std::ptrdiff_t>(from),
+              cross.bins.begin() + static_cast<std::ptrdiff_t>(to), work.data() + from);
+    ComplexFft<double>(n).inverse(work.data());
+    for (std::size_t i = 0; i < n; ++i)
+      power[i] += static_cast<double>(edges.size()) * std::norm(work[i]);
+    from = to;
+  }
   std::size_t top = 0;
   for (std::size_t i = 0; i < n; ++i)
-    if (std::norm(work[i]) > std::norm(work[top])) top = i;
-  const double before = std::norm(work[(top + n - 1) % n]), here = std::norm(work[top]),
-               after = std::norm(work[(top + 1) % n]);
+    if (power[i] > power[top]) top = i;
+  const double before = power[(top + n - 1) % n], here = power[top], after = power[(top + 1) % n];
   const double bend = before - 2.0 * here + after;
   const double offset = bend < 0.0 ? 0.5 * (before - after) / bend : 0.0;
   const double most = here - 0.25 * (before - after) * offset;
@@ -70,24 +105,24 @@ DopplerAnswer doppler_answer(const Replica& replica, double doppler) {
 namespace {
 
 /// The offset of η from 1 at which the response has fallen to `least`, or `most` if it has not.
-double offset_of_response(const Replica& replica, double least, double most) {
+double offset_of_response(const Replica& replica, double least, double most, int sub_bands) {
   double inside = 0.0, outside = 0.02 / (replica.centre_frequency() * replica.duration());
-  while (outside < most && doppler_answer(replica, 1.0 + outside).response > least) {
+  while (outside < most && doppler_answer(replica, 1.0 + outside, sub_bands).response > least) {
     inside = outside;
     outside *= 2.0;
   }
   outside = std::min(outside, most);
   for (int i = 0; i < 20; ++i) {
     const double middle = 0.5 * (inside + outside);
-    (doppler_answer(replica, 1.0 + middle).response > least ? inside : outside) = middle;
+    (doppler_answer(replica, 1.0 + middle, sub_bands).response > least ? inside : outside) = middle;
   }
   return inside;
 }
 
 }  // namespace
 
-double doppler_cell(const Replica& replica) {
-  return offset_of_response(replica, std::numbers::sqrt2 / 2.0, 0.1);
+double doppler_cell(const Replica& replica, int sub_bands) {
+  return offset_of_response(replica, std::numbers::sqrt2 / 2.0, 0.1, sub_bands);
 }
 
 std::vector<double> ambiguity(const Replica& replica, std::span<const double> delays,
@@ -103,9 +138,10 @@ std::vector<double> ambiguity(const Replica& replica, std::span<const double> de
   return surface;
 }
 
-std::vector<double> doppler_bank(const Replica& replica, double span, double loss_db) {
+std::vector<double> doppler_bank(const Replica& replica, double span, double loss_db,
+                                 int sub_bands) {
   if (!(span > 0.0)) return {1.0};
-  const double inside = offset_of_response(replica, amplitude_from_db(-loss_db), span);
+  const double inside = offset_of_response(replica, amplitude_from_db(-loss_db), span, sub_bands);
   const double half = std::ceil(span / (2.0 * inside));
   if (2.0 * half + 1.0 > static_cast<double>(most_filters))
     throw InputError(
@@ -119,8 +155,11 @@ std::vector<double> doppler_bank(const Replica& replica, double span, double los
 }
 
 MatchedFilterBank::MatchedFilterBank(const Replica& replica, std::span<const double> dopplers,
-                                     const Baseband& like)
-    : dopplers_(dopplers.begin(), dopplers.end()), row_(like.samples), start_(like.start) {
+                                     const Baseband& like, int sub_bands)
+    : sub_bands_(sub_bands),
+      dopplers_(dopplers.begin(), dopplers.end()),
+      row_(like.samples),
+      start_(like.start) {
   const double spacing = like.sample_rate / static_cast<double>(like.samples);
   // The pulse's band; what lies outside it is 40 dB weaker, but an unwindowed tone keeps a
   // hundredth of its energy there: as much again on either side.
@@ -146,6 +185,16 @@ MatchedFilterBank::MatchedFilterBank(const Replica& replica, std::span<const dou
                         .got = "a factor of " + std::to_string(doppler),
                         .expected = "one whose echo lies within the band"});
   }
+  const std::vector<double> cuts = sub_band_edges(replica, sub_bands);
+  for (std::size_t f = 0; f < dopplers_.size(); ++f) {
+    edges_.push_back(0);
+    for (const double cut : cuts) {
+      const double bin = std::ceil((cut * dopplers_[f] - like.carrier) / spacing);
+      edges_.push_back(std::clamp<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(bin) - first_[f], 0,
+                                                  static_cast<std::ptrdiff_t>(bins_)));
+    }
+    edges_.push_back(static_cast<std::ptrdiff_t>(bins_));
+  }
   weights_.resize(dopplers_.size() * bins_);
   in_parallel(dopplers_.size(), [&](std::size_t f) {
     const double energy = replica.energy() / dopplers_[f];
@@ -169,6 +218,27 @@ void MatchedFilterBank::transform(std::span<const std::complex<float>> row,
 
 void MatchedFilterBank::filter(std::size_t k, const std::complex<float>* spectrum,
                                std::complex<float>* out) const {
+  filter(k, spectrum, 0, static_cast<std::ptrdiff_t>(bins_), out);
+}
+
+void MatchedFilterBank::power(std::size_t k, const std::complex<float>* spectrum,
+                              std::complex<float>* work, float* out) const {
+  const auto parts = static_cast<std::size_t>(sub_bands_);
+  const std::ptrdiff_t* edge = edges_.data() + k * (parts + 1);
+  for (std::size_t part = 0; part < parts; ++part) {
+    filter(k, spectrum, edge[part], edge[part + 1], work);
+    if (part == 0)
+      for (std::size_t i = 0; i < samples_; ++i) out[i] = std::norm(work[i]);
+    else
+      for (std::size_t i = 0; i < samples_; ++i) out[i] += std::norm(work[i]);
+  }
+  if (parts > 1)
+    for (std::size_t i = 0; i < samples_; ++i) out[i] *= static_cast<float>(parts);
+}
+
+void MatchedFilterBank::filter(std::size_t k, const std::complex<float>* spectrum,
+                               std::ptrdiff_t from, std::ptrdiff_t to,
+                               std::complex<float>* out) const {
   // Bins below the carrier lie at the end of the row; what would lie beyond either has no weight.
   const auto n = static_cast<std::ptrdiff_t>(row_), count = static_cast<std::ptrdiff_t>(bins_);
   const std::complex<float>* weight = weights_.data() + k * bins_;
@@ -184,6 +254,8 @@ void MatchedFilterBank::filter(std::size_t k, const std::complex<float>* spectru
   multiply(zero, end, 0);
   std::fill(out + end, out + count, 0.0F);
   std::fill(out + bins_, out + length_, 0.0F);
+  std::fill(out, out + from, 0.0F);
+  std::fill(out + to, out + count, 0.0F);
   ComplexFft<float>(length_).inverse(out);
 }
 

@@ -16,10 +16,16 @@ struct DopplerAnswer {
   double response = 1.0;  ///< |χ|, where most is left of it; 1 at η = 1
   double delay = 0.0;     ///< and by how much that is late [s]
 };
-[[nodiscard]] DopplerAnswer doppler_answer(const Replica& replica, double doppler);
+/// \param sub_bands  as of MatchedFilterBank: the mean of theirs, as |χ|²
+[[nodiscard]] DopplerAnswer doppler_answer(const Replica& replica, double doppler,
+                                           int sub_bands = 1);
+
+/// Where a pulse's band is cut into parts of equal energy, without the outermost ends [Hz].
+/// \return [parts − 1]
+[[nodiscard]] std::vector<double> sub_band_edges(const Replica& replica, int parts);
 
 /// Half the span of factors in which a filter answers within 3 dB.
-[[nodiscard]] double doppler_cell(const Replica& replica);
+[[nodiscard]] double doppler_cell(const Replica& replica, int sub_bands = 1);
 
 /// Ambiguity surface |χ(τ, η)|² of a pulse: the answer of the filter matched to η = 1 to an echo of
 /// factor η and delay τ. \return [dopplers × delays], 1 at (0, 1)
@@ -30,7 +36,7 @@ struct DopplerAnswer {
 /// of them loses at most `loss_db`: every half cycle over the pulse for a tone (0.5/T [Hz]), few
 /// for a wide sweep. \throws InputError ("max_speed") if more than 20 000 were needed
 [[nodiscard]] std::vector<double> doppler_bank(const Replica& replica, double span,
-                                               double loss_db = 0.25);
+                                               double loss_db = 0.25, int sub_bands = 1);
 
 /// Filters matched to an echo at each of many Doppler factors.
 ///
@@ -43,7 +49,9 @@ class MatchedFilterBank {
  public:
   /// \param like  rows of the same rate, carrier, start and length are filtered
   /// \throws InputError ("dopplers") if a filter lies outside the band
-  MatchedFilterBank(const Replica& replica, std::span<const double> dopplers, const Baseband& like);
+  /// \param sub_bands  of equal energy, each filtered by itself: power() is their mean
+  MatchedFilterBank(const Replica& replica, std::span<const double> dopplers, const Baseband& like,
+                    int sub_bands = 1);
 
   [[nodiscard]] std::size_t filters() const noexcept { return dopplers_.size(); }
   [[nodiscard]] double doppler(std::size_t k) const noexcept { return dopplers_[k]; }
@@ -57,9 +65,21 @@ class MatchedFilterBank {
   /// y of filter k, without the phase of the carrier. \param work, out  work() long, an FftBuffer;
   /// the first samples() of it are meant
   void filter(std::size_t k, const std::complex<float>* spectrum, std::complex<float>* out) const;
+  /// |y|² of filter k; of sub-bands the mean of theirs, each with its own energy in the place of E,
+  /// so that an echo of amplitude A gives |A|² still. All are matched at one factor η, and so an
+  /// echo of that factor comes at one time in all of them: sweeps are aligned along their ridge.
+  /// Source: docs/theory/continuous.md   \param work  as `out` of filter()   \param out [samples()]
+  void power(std::size_t k, const std::complex<float>* spectrum, std::complex<float>* work,
+             float* out) const;
+  [[nodiscard]] int sub_bands() const noexcept { return sub_bands_; }
   [[nodiscard]] std::size_t work() const noexcept { return length_; }
 
  private:
+  void filter(std::size_t k, const std::complex<float>* spectrum, std::ptrdiff_t from,
+              std::ptrdiff_t to, std::complex<float>* out) const;
+
+  int sub_bands_ = 1;
+  std::vector<std::ptrdiff_t> edges_;  // [filters × (sub-bands + 1)] bins of weights_
   std::vector<double> dopplers_;
   std::vector<std::ptrdiff_t> first_;         // [filters] bin, counted from the carrier
   std::vector<std::complex<float>> weights_;  // [filters × bins_] of S*(f/η)/η/E

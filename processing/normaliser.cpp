@@ -17,13 +17,51 @@ constexpr double cells_of_clipped = 0.91;
 
 }  // namespace
 
-double cfar_multiplier(double false_alarm_probability, double cells) {
+namespace {
+
+/// Probability that a mean of `looks` exponential values is over α times the mean of so many cells
+/// of the same kind: with x = α/M, P = Σ_{k<N} Γ(NM + k)/(Γ(NM) k!) x^k (1 + x)^−(NM + k); of very
+/// many cells e^{−Nα} Σ (Nα)^k/k!. \return ln P
+double log_exceedance(double alpha, double cells, int looks) {
+  const bool known = cells > 1e6;
+  const double n = looks, m = n * cells;
+  double sum = 0.0;
+  for (int k = 0; k < looks; ++k) {
+    const double x = known ? n * alpha : alpha / cells;
+    const double ways = known ? 0.0 : std::lgamma(m + k) - std::lgamma(m) - k * std::log1p(x);
+    sum += std::exp(ways - std::lgamma(k + 1.0) + k * std::log(x));
+  }
+  return std::log(sum) - (known ? n * alpha : m * std::log1p(alpha / cells));
+}
+
+/// What exponential values' means have on average once those above r times theirs are put back to
+/// it: 1 − ∫_r (x − 1) p(x) dx, 1 − r·e^(−r) of one value.
+double mean_of_clipped(int looks) {
+  if (looks == 1) return 1.0 - outstanding * std::exp(-outstanding);
+  // ∫_r x p dx − ∫_r p dx = Q(N + 1, Nr) − Q(N, Nr), the last term of a Poisson sum.
+  const double x = looks * outstanding;
+  return 1.0 - std::exp(looks * std::log(x) - x - std::lgamma(looks + 1.0));
+}
+
+}  // namespace
+
+double cfar_multiplier(double false_alarm_probability, double cells, int looks) {
+  if (looks > 1) {
+    const double wanted = std::log(false_alarm_probability);
+    double low = 1e-3, high = 2.0;
+    while (log_exceedance(high, cells, looks) > wanted && high < 1e12) high *= 2.0;
+    for (int i = 0; i < 60; ++i) {
+      const double middle = 0.5 * (low + high);
+      (log_exceedance(middle, cells, looks) > wanted ? low : high) = middle;
+    }
+    return high;
+  }
   if (cells > 1e6) return -std::log(false_alarm_probability);
   return cells * std::expm1(-std::log(false_alarm_probability) / cells);
 }
 
-BackgroundEstimator::BackgroundEstimator(const NormaliserSettings& settings, double cell)
-    : settings_(settings) {
+BackgroundEstimator::BackgroundEstimator(const NormaliserSettings& settings, double cell, int looks)
+    : settings_(settings), put_back_(mean_of_clipped(looks)) {
   check_settings(settings);
   guard_ = static_cast<std::size_t>(std::ceil(settings.guard_cells * cell));
   reference_ = static_cast<std::size_t>(std::max(1.0, std::round(settings.reference_cells * cell)));
@@ -31,7 +69,7 @@ BackgroundEstimator::BackgroundEstimator(const NormaliserSettings& settings, dou
   const double worth = settings.method == Normaliser::split_window ? cells_of_clipped : 1.0;
   for (std::size_t count = 1; count <= 2 * reference_; ++count)
     multiplier_.push_back(static_cast<float>(cfar_multiplier(
-        settings.false_alarm_probability, worth * static_cast<double>(count) / cell)));
+        settings.false_alarm_probability, worth * static_cast<double>(count) / cell, looks)));
 }
 
 void BackgroundEstimator::operator()(std::span<const float> power, std::span<float> background,
@@ -79,7 +117,7 @@ void BackgroundEstimator::operator()(std::span<const float> power, std::span<flo
     for (std::size_t i = 0; i < n; ++i)
       scratch.clipped[i] =
           power[i] > static_cast<float>(outstanding) * background[i] ? background[i] : power[i];
-    average(scratch.clipped, 1.0 / (1.0 - outstanding * std::exp(-outstanding)));
+    average(scratch.clipped, 1.0 / put_back_);
   }
 }
 

@@ -37,14 +37,16 @@ struct NormaliserSettings {
 /// Threshold over the mean of `cells` independent exponential cells (Rayleigh envelope) for a
 /// constant false-alarm rate: α = N·(P^(−1/N) − 1); −ln P for very many.
 /// Finn & Johnson, RCA Review 29, 414 (1968). docs/theory/processing.md, eq. (7)
-[[nodiscard]] double cfar_multiplier(double false_alarm_probability, double cells);
+/// \param looks  independent exponential values whose mean each cell is (sub-bands)
+[[nodiscard]] double cfar_multiplier(double false_alarm_probability, double cells, int looks = 1);
 
 /// Compares each value of a series of powers with its surroundings.
 class BackgroundEstimator {
  public:
   /// \param cell  samples per cell, may be a fraction
   /// \throws InputError ("reference_cells", "guard_cells", "false_alarm_probability")
-  BackgroundEstimator(const NormaliserSettings& settings, double cell);
+  /// \param looks  as of cfar_multiplier()
+  BackgroundEstimator(const NormaliserSettings& settings, double cell, int looks = 1);
 
   struct Scratch {
     std::vector<double> sums;
@@ -60,6 +62,7 @@ class BackgroundEstimator {
  private:
   NormaliserSettings settings_;
   std::size_t guard_, reference_;  // samples on either side
+  double put_back_ = 1.0;          // mean of what is clipped, over the mean
   std::vector<float> multiplier_;  // [1 + 2·reference_] by number of reference samples
 };
 

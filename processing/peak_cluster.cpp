@@ -30,6 +30,7 @@ LeakTable::LeakTable(const Replica& replica, const MatchedFilterBank& bank)
   const auto n = fast_fft_length(static_cast<std::size_t>(std::ceil(bank.sample_rate() / spacing)));
   const double fine = bank.sample_rate() / static_cast<double>(n);
   static_cast<void>(ComplexFft<double>(n));
+  const std::vector<double> cuts = sub_band_edges(replica, bank.sub_bands());
   in_parallel(static_cast<std::size_t>(2 * filters_ - 1), [&](std::size_t row_number) {
     const std::ptrdiff_t k = static_cast<std::ptrdiff_t>(row_number) + 1 - filters_;
     const double doppler = 1.0 + step * static_cast<double>(k);
@@ -37,21 +38,28 @@ LeakTable::LeakTable(const Replica& replica, const MatchedFilterBank& bank)
                  high = replica.highest_frequency() + 0.25 * replica.bandwidth();
     if (low * doppler > high || high * doppler < low) return;  // apart in frequency
     FftBuffer<std::complex<double>> work(n);
+    std::vector<double> power(n, 0.0);
     const auto bins = static_cast<std::size_t>((high - low) / fine);
-    for (std::size_t i = 0; i < bins && i < n; ++i) {
-      const double f = low + static_cast<double>(i) * fine;
-      work[i] = replica.spectrum(f) * std::conj(replica.spectrum(f, doppler));
+    std::size_t i_bin = 0;
+    for (std::size_t part = 0; part <= cuts.size(); ++part) {
+      if (part > 0) work.clear();
+      for (; i_bin < bins && i_bin < n; ++i_bin) {
+        const double f = low + static_cast<double>(i_bin) * fine;
+        if (part < cuts.size() && f >= cuts[part] * doppler) break;
+        work[i_bin] = replica.spectrum(f) * std::conj(replica.spectrum(f, doppler));
+      }
+      ComplexFft<double>(n).inverse(work.data());
+      for (std::size_t i = 0; i < n; ++i) power[i] += std::norm(work[i]);
     }
-    ComplexFft<double>(n).inverse(work.data());
-    // eq. (3) of an echo s₊(t) in the filter of factor 1 + k·step
-    const double scale = std::pow(fine * doppler / replica.energy(), 2.0);
+    // eq. (3) of an echo s₊(t) in the filter of factor 1 + k·step; the mean of the sub-bands
+    const double scale =
+        std::pow(fine * doppler / replica.energy(), 2.0) * static_cast<double>(cuts.size() + 1);
     float* row = values_.data() + (k + filters_ - 1) * width;
     const auto size = static_cast<std::ptrdiff_t>(n);
     for (std::ptrdiff_t i = -reach_; i <= reach_; ++i) {
       double most = 0.0;  // between samples as well
       for (std::ptrdiff_t j = i - 1; j <= i + 1; ++j)
-        most =
-            std::max(most, std::norm(work[static_cast<std::size_t>(((j % size) + size) % size)]));
+        most = std::max(most, power[static_cast<std::size_t>(((j % size) + size) % size)]);
       row[i + reach_] = static_cast<float>(scale * most);
     }
   });

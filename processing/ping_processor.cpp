@@ -8,6 +8,7 @@
 #include "core/check_settings.h"
 #include "core/error.h"
 #include "core/geometry.h"
+#include "processing/known_blasts.h"
 #include "processing/listening_band.h"
 #include "raytrace/parallel/parallel.h"
 #include "sonar/scenario/ping_geometry.h"
@@ -96,9 +97,13 @@ PingProcessor::PingProcessor(Scenario scenario, std::vector<Replica> replicas,
            .expected = "a depth above the sea floor at " + std::to_string(floor) + " m"});
   }
   for (const Replica& replica : replicas_) {
+    const double product = replica.noise_bandwidth() * replica.duration();
+    require(settings_.detector.sub_bands == 1 || settings_.detector.sub_bands <= 0.25 * product,
+            "sub_bands", settings_.detector.sub_bands,
+            "no more than a quarter of the pulse's duration times its bandwidth");
     // The slowest sound of any ocean, so that no echo falls outside the bank.
-    banks_.push_back(
-        doppler_bank(replica, 2.0 * settings_.max_speed / 1400.0, settings_.bank_loss_db));
+    banks_.push_back(doppler_bank(replica, 2.0 * settings_.max_speed / 1400.0,
+                                  settings_.bank_loss_db, settings_.detector.sub_bands));
     localisers_.push_back(std::make_unique<Localiser>(
         paths_, LocaliserSettings{.frequency = replica.centre_frequency(),
                                   .propagation = scenario_.propagation,
@@ -125,11 +130,11 @@ ProcessedArray PingProcessor::process(const ArrayRecording& recording,
     band = {.centre = 0.5 * (low + high), .width = high - low};
   }
   const double silence = pulse.duration() / factors.front();
-  const Baseband baseband = recording.carrier
-                                ? to_baseband(recording.envelope, channels, recording.sample_rate,
-                                              *recording.carrier, recording.start, band, silence)
-                                : to_baseband(recording.pressure, channels, recording.sample_rate,
-                                              recording.start, band, silence);
+  Baseband baseband = recording.carrier
+                          ? to_baseband(recording.envelope, channels, recording.sample_rate,
+                                        *recording.carrier, recording.start, band, silence)
+                          : to_baseband(recording.pressure, channels, recording.sample_rate,
+                                        recording.start, band, silence);
 
   ProcessedArray done{.ping = recording.ping, .array = recording.array};
   const PingGeometry geometry(scenario_,
@@ -162,8 +167,38 @@ ProcessedArray PingProcessor::process(const ArrayRecording& recording,
   done.places.shape = done.shape;
   done.elevation_sigma = 0.25 * wavelength / std::max(done.shape.height, 0.25 * wavelength);
 
+  const double length = static_cast<double>(recording.carrier ? recording.envelope.size()
+                                                              : recording.pressure.size()) /
+                        static_cast<double>(std::max<std::size_t>(channels, 1)) /
+                        recording.sample_rate;
+  BlastSearch search{.scenario = scenario_,
+                     .paths = paths_,
+                     .ping = recording.ping,
+                     .transmitter = recording.transmitter,
+                     .array = recording.array,
+                     .ping_time = recording.ping_time,
+                     .start = recording.start,
+                     .end = recording.start + length,
+                     .phones = phones};
+  done.sends_on = sends_on(scenario_, recording.transmitter, recording.array, pulse.duration());
+  if (settings_.cancel_direct_blast != BlastCancelling::off) {
+    const std::vector<KnownBlast> blasts =
+        known_blasts(search, replicas_, settings_.cancel_direct_blast == BlastCancelling::on);
+    cancel_blasts(baseband, band, blasts, blanked_times(search, replicas_), done.blast);
+  }
+
   DetectorSettings detector = settings_.detector;
-  detector.first_time = std::max(detector.first_time.value_or(0.0), recording.start);
+  done.searched_from =
+      std::max(settings_.detector.first_time.value_or(first_time(search)), recording.start);
+  detector.first_time = done.searched_from;
+  if (!detector.last_time && done.sends_on) {
+    // Echoes that are received whole; of a record hardly longer than the pulse, by half.
+    const double whole = search.end - pulse.duration();
+    detector.last_time = whole > done.searched_from + 0.5 * pulse.duration()
+                             ? whole
+                             : search.end - 0.5 * pulse.duration();
+  }
+  done.searched_until = std::min(detector.last_time.value_or(infinity), search.end);
   std::vector<Probe> probes;
   for (const TrueEcho& echo : echoes)
     probes.push_back({.time = echo.time,
@@ -190,6 +225,18 @@ ProcessedArray PingProcessor::process(const ArrayRecording& recording,
     if (d.locations.empty()) d.unplaced = localiser.reason(d, places);
   });
   return done;
+}
+
+double PingProcessor::first_time(const BlastSearch& search) const {
+  if (!scenario_.pings.continuous) return 0.0;
+  const Replica& pulse = replica(search.transmitter);
+  // The own ship's pulse hides what comes while it lasts, unless it lasts so long that echoes are
+  // looked for meanwhile. On other ships nothing of a ping comes before its own sound.
+  if (is_own(scenario_, search.transmitter, search.array))
+    return sends_on(scenario_, search.transmitter, search.array, pulse.duration())
+               ? 0.0
+               : pulse.duration();
+  return first_sound(search, pulse);
 }
 
 std::string PingProcessor::lack() const {
@@ -242,6 +289,7 @@ Resolution PingProcessor::resolution(const ProcessedArray& processed) const {
   return {.time = processed.result.time_cell,
           .doppler = processed.result.doppler_cell,
           .delay_per_doppler = processed.result.delay_per_doppler,
+          .curved = processed.sends_on,
           .direction =
               processed.shape.kind == ArrayKind::point ? 2.0 : wavelength / processed.shape.length};
 }

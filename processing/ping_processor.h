@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "processing/blast_canceller.h"
 #include "processing/detector.h"
 #include "processing/localiser.h"
 #include "processing/processing_settings.h"
@@ -15,6 +16,8 @@
 #include "sonar/scenario/scenario.h"
 
 namespace asdic::detail {
+
+struct BlastSearch;
 
 /// What one array recorded of one ping.
 struct ArrayRecording {
@@ -46,6 +49,10 @@ struct ProcessedArray {
   double sound_speed = 0.0;      ///< at the array [m/s]
   double elevation_sigma = 0.0;  ///< of a measured elevation [rad]
   SonarPlaces places;
+  double searched_from = 0.0;        ///< nothing is detected before [s]
+  double searched_until = infinity;  ///< nor after
+  bool sends_on = false;             ///< echoes are looked for while the transmitter sends
+  BlastCancellation blast;           ///< what was taken out of the record first
 };
 
 /// The receiver of a whole scenario: band, beams, matched filters, detections, places, tracks.
@@ -89,6 +96,9 @@ class PingProcessor {
   }
 
  private:
+  /// Where the settings leave it open. \param search  the ping and array
+  [[nodiscard]] double first_time(const BlastSearch& search) const;
+
   Scenario scenario_;
   std::vector<Replica> replicas_;
   ProcessingSettings settings_;

@@ -89,9 +89,17 @@ void ProcessingSettings::describe(Fields& field) {
   field("max_speed", max_speed, reached_speed,
         "closing or opening, that the Doppler filters reach");
   detector.normaliser.describe(field);
+  field("cancel_direct_blast", cancel_direct_blast,
+        "take the transmissions' own sound out of the record first; auto: where echoes come while "
+        "a transmitter sends on");
+  field("sub_bands", detector.sub_bands, 1, 256,
+        "of equal energy that a pulse is cut into: their powers are averaged, for pulses longer "
+        "than echoes stay coherent");
   field("from", detector.first_time, since_ping,
-        "nothing is detected before, after the ping's start; default: the pulse's duration");
-  field("until", detector.last_time, since_ping, "nor after");
+        "nothing is detected before, after the ping's start; default: the pulse's duration, or 0 "
+        "where echoes come while the transmitter sends on");
+  field("until", detector.last_time, since_ping,
+        "nor after; default: the record's end, less the pulse where the transmitter sends on");
   field("target_depth", target_depth, {.noun = "depth", .unit = "m", .low = 0.0},
         "depth of what answers; default: where the ray came from if the array tells elevation, "
         "else 100 m");

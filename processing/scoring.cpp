@@ -65,8 +65,12 @@ PingScore score_detections(std::span<const Detection> detections, std::span<cons
     for (const TrueEcho& echo : echoes) {
       const double off = std::isnan(echo.doppler) ? 0.0 : d.doppler - echo.doppler;
       const double along_ridge = resolution.delay_per_doppler * off;
-      if (std::abs(d.time - echo.time - along_ridge) > resolution.time ||
-          std::abs(off) > resolution.doppler ||
+      double late = d.time - echo.time - along_ridge;
+      if (resolution.curved) {
+        const double other = d.time - echo.time;
+        late = late * other < 0.0 ? 0.0 : std::min(std::abs(late), std::abs(other));
+      }
+      if (std::abs(late) > resolution.time || std::abs(off) > resolution.doppler ||
           off_direction(d, echo, shape, resolution.direction) > resolution.direction ||
           echo.level_db <= loudest)
         continue;

@@ -41,7 +41,11 @@ struct Resolution {
   double time = 0.0;               ///< a cell [s]
   double doppler = 0.0;            ///< factors' difference
   double delay_per_doppler = 0.0;  ///< a sweep's time is right up to this times an error of η [s]
-  double direction = 0.0;          ///< cosine's (line) or angle's difference: a beam's width
+  /// Of pulses so long that a path curves meanwhile: that changes a sweep's rate, which the filters
+  /// take for a Doppler factor without the delay that belongs to it. The time is right somewhere
+  /// between with and without the ridge.
+  bool curved = false;
+  double direction = 0.0;  ///< cosine's (line) or angle's difference: a beam's width
 };
 
 /// What became of one target in one ping.

@@ -38,8 +38,13 @@ struct Receiving {
   double guard_cells = 2.0;       ///< left out on either side
   double reference_cells = 12.0;  ///< averaged on either side
   double false_alarm_probability = 1e-6;  ///< of a cell
-  std::optional<double> from = {};        ///< nothing before is detected [s]; the pulse's duration
-  std::optional<double> until = {};       ///< nor after [s]
+  int sub_bands = 1;                      ///< that a pulse is cut into; their powers are averaged
+  /// Whether the transmissions' own sound is taken out of the record first; none: where echoes come
+  /// while a transmitter of a continuous record sends on.
+  std::optional<bool> cancel_direct_blast = {};
+  /// Nothing before is detected [s]; the pulse's duration, or 0 while a transmitter sends on
+  std::optional<double> from = {};
+  std::optional<double> until = {};         ///< nor after [s]
   std::optional<double> target_depth = {};  ///< of what answers [m]
   std::optional<double> range_speed = {};   ///< straight rays of this speed instead [m/s]
 };
@@ -95,6 +100,7 @@ struct Processed {
   std::vector<Detection> detections{};
   std::vector<Track> tracks{};          ///< of two pings or more
   std::vector<std::string> warnings{};  ///< what to know before trusting it
+  std::vector<std::string> notes{};     ///< what was done to the records, and what that costs
   bool on_earth = false;                ///< whether places have latitudes and longitudes
 };
 

@@ -90,6 +90,39 @@ std::string bending(const PingProcessor& processor, const ProcessedArray& made,
          tenths(degrees(std::min(turned, pi))) + " degrees off";
 }
 
+/// What was taken out of a record before anything else, and what goes with it; "" of nothing.
+std::string cancelled(const PingProcessor& processor, const ProcessedArray& made) {
+  const BlastCancellation& blast = made.blast;
+  if (blast.cancelled == 0) return "";
+  std::string text = "ping " + std::to_string(made.ping) + ", " +
+                     processor.scenario().arrays[static_cast<std::size_t>(made.array)].name +
+                     ": the direct blast of " + std::to_string(blast.cancelled) +
+                     (blast.cancelled == 1 ? " transmission is " : " transmissions is ") +
+                     tenths(blast.lowered_db()) + " dB lower, " + tenths(blast.after_db) +
+                     " dB re 1 uPa with all that is left; echoes within " +
+                     six_digits(std::ceil(blast.blind_ms())) +
+                     " ms of its delays, along the ridge, go with it";
+  if (blast.narrowed) text += "; its faintest paths are left, for they are too many";
+  return text;
+}
+
+/// What sub-bands cost, and what is told of them; "" of one.
+std::string cut(const PingProcessor& processor, const ProcessedArray& made, int transmitter) {
+  const DetectorSettings& settings = processor.settings().detector;
+  const int parts = settings.sub_bands;
+  if (parts < 2) return "";
+  const double p = settings.normaliser.false_alarm_probability;
+  const double whole = cfar_multiplier(p, infinity) - 1.0,
+               mean = parts * (cfar_multiplier(p, infinity, parts) - 1.0);
+  return std::to_string(parts) + " sub-bands of " +
+         processor.scenario().transmitters[static_cast<std::size_t>(transmitter)].name +
+         ": each has " + tenths(db_from_power(parts)) +
+         " dB less processing gain, the mean of all asks for an echo " +
+         tenths(db_from_power(mean / whole)) + " dB louder than one filter; a cell is " +
+         six_digits(std::round(1e4 * made.result.time_cell) / 10.0) + " ms, " +
+         six_digits(std::round(0.5 * made.sound_speed * made.result.time_cell)) + " m of range";
+}
+
 double error_of(const ProcessedTrack& made, const TrackPoint& p, const ProcessedPing& ping,
                 const Scenario& scenario) {
   if (made.target < 0) return none;
@@ -178,15 +211,18 @@ ProcessedRun process_pings(const ReceivedPings& recordings, const PingProcessor&
         run.warnings.push_back(bends);
       if (const std::string faint = rounding(made.array, received); !faint.empty())
         run.warnings.push_back(faint);
+      if (const std::string blast = cancelled(processor, made.array); !blast.empty())
+        run.notes.push_back(blast);
+      if (const std::string parts = cut(processor, made.array, made.transmitter);
+          !parts.empty() && std::find(run.notes.begin(), run.notes.end(), parts) == run.notes.end())
+        run.notes.push_back(parts);
       for (std::size_t i = 0; i < echoes.size(); ++i)
         echoes[i].threshold_db = made.array.result.thresholds_db[i];
       made.truth = recordings.targets(row, echoes);
-      const DetectorSettings& searched = processor.settings().detector;
-      made.score =
-          score_detections(made.array.result.detections, echoes, made.truth, made.array.shape,
-                           made.array.places.array, processor.resolution(made.array),
-                           searched.first_time.value_or(0.0),
-                           std::min(searched.last_time.value_or(infinity), recordings.end(row)));
+      made.score = score_detections(made.array.result.detections, echoes, made.truth,
+                                    made.array.shape, made.array.places.array,
+                                    processor.resolution(made.array), made.array.searched_from,
+                                    std::min(made.array.searched_until, recordings.end(row)));
       if (row == first)
         made.map_range =
             processor.ranges_at(made.array, made.transmitter, made.array.result.maps.time);

@@ -145,10 +145,11 @@ void add_results(const std::filesystem::path& path, const ProcessedRun& run,
   Hdf5File file = Hdf5File::edit(path);
   file.remove("processed");
   file.make_group("processed");
-  file.set_attribute("processed", "version", "2.1");
+  file.set_attribute("processed", "version", "2.2");
   file.set_attribute("processed", "program_version", run.program_version);
   if (!run.options.empty()) file.set_attribute("processed", "options", run.options);
   if (!run.warnings.empty()) file.set_attribute("processed", "warnings", run.warnings);
+  if (!run.notes.empty()) file.set_attribute("processed", "notes", run.notes);
   write_table(file, "detections", "detection", processing::detections_table(run));
   write_table(file, "tracks", "point", processing::tracks_table(run));
   write_table(file, "targets", "row", processing::targets_table(run));

@@ -39,6 +39,7 @@ struct ProcessedRun {
   std::vector<ProcessedTrack> tracks;
   std::vector<std::string> options;   ///< "name=value" of what was asked for
   std::vector<std::string> warnings;  ///< what is to be known before it is trusted
+  std::vector<std::string> notes;     ///< what the receiver did to the records, and what that costs
   std::string program_version;
   EarthPlaces earth{};  ///< of the scenario's map
   bool maps = true;

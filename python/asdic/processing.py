@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 OPTIONS: dict[str, Any] = {
     "mvdr": bool, "hann_shading": bool, "max_speed": "m/s", "split_window": bool,
     "across_beams": bool, "guard_cells": "", "reference_cells": "", "false_alarm_probability": "",
-    "start": "s", "stop": "s", "target_depth": "m", "range_speed": "m/s"}
+    "sub_bands": "", "cancel_direct_blast": bool, "start": "s", "stop": "s", "target_depth": "m", "range_speed": "m/s"}
 
 UNITS = {"time": "s", "bearing_deg": "degrees", "elevation_deg": "degrees", "snr_db": "dB",
          "excess_db": "dB", "level_db": "dB re 1 µPa", "east": "m", "north": "m", "depth": "m",
@@ -44,6 +44,8 @@ class Processed:
         array, ambiguous, target and ``points``, a pandas.DataFrame, with latitude and longitude
         likewise.
     warnings : list of str
+    notes : list of str
+        What was done to the records before they were searched, and what that costs.
 
     The units of a table's columns are its ``attrs["units"]``.
     """
@@ -52,6 +54,7 @@ class Processed:
     places: pd.DataFrame
     tracks: list[dict]
     warnings: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
 
 
 def process(source, progress=None, **options) -> Processed:
@@ -63,8 +66,8 @@ def process(source, progress=None, **options) -> Processed:
         What :meth:`Scenario.ping` gave, several pings of one scenario in order, or a ping file.
     **options
         mvdr, hann_shading, max_speed [m/s], split_window, across_beams, guard_cells,
-        reference_cells, false_alarm_probability, start, stop [s], target_depth [m],
-        range_speed [m/s]; defaults are those of ``asdic process``.
+        reference_cells, false_alarm_probability, sub_bands, cancel_direct_blast, start, stop [s],
+        target_depth [m], range_speed [m/s]; defaults are those of ``asdic process``.
 
     Raises InputError.
     """
@@ -103,7 +106,7 @@ def process(source, progress=None, **options) -> Processed:
     detections, where = pd.DataFrame(found["detections"]), pd.DataFrame(places, columns=columns)
     for table in (detections, where, *(track["points"] for track in tracks)):
         table.attrs["units"] = {name: UNITS[name] for name in table.columns if name in UNITS}
-    return Processed(detections, where, tracks, found["warnings"])
+    return Processed(detections, where, tracks, found["warnings"], found["notes"])
 
 
 def _handle(dataset):

@@ -20,6 +20,13 @@ Receiving receiving_of(const py::dict& options) {
   take("guard_cells", made.guard_cells);
   take("reference_cells", made.reference_cells);
   take("false_alarm_probability", made.false_alarm_probability);
+  if (options.contains("sub_bands")) {
+    const auto parts = options["sub_bands"].cast<double>();
+    if (!(parts >= 1.0 && parts <= 256.0 && parts == std::floor(parts)))
+      throw InputError("sub_bands", std::to_string(parts), "a whole number from 1 to 256");
+    made.sub_bands = static_cast<int>(parts);
+  }
+  take("cancel_direct_blast", made.cancel_direct_blast);
   take("start", made.from);
   take("stop", made.until);
   take("target_depth", made.target_depth);
@@ -63,7 +70,7 @@ py::dict shown(const Processed& all) {
           "excess_db"_a = number([](const Detection& d) { return d.excess_db; }),
           "level_db"_a = number([](const Detection& d) { return d.level_db; }),
           "target"_a = whole([](const Detection& d) { return d.target; })),
-      "places"_a = places, "tracks"_a = tracks, "warnings"_a = all.warnings,
+      "places"_a = places, "tracks"_a = tracks, "warnings"_a = all.warnings, "notes"_a = all.notes,
       "on_earth"_a = all.on_earth);
 }
 
