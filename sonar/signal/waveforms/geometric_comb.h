@@ -9,7 +9,7 @@ namespace asdic::detail {
 
 /// Tones at once, as loud as one another, each gap between neighbours a ratio r times the one
 /// before: f_n = f₁ + (f_N − f₁)(rⁿ − 1)/(r^{N−1} − 1), n = 0…N − 1. As no two gaps are alike, a
-/// Doppler shift puts at most one line on another. Phases πn²/N keep the peak low.
+/// Doppler shift puts at most one line on another. Phases πn²/N lower the peak by a decibel or two.
 /// Cox & Lai, Proc. 28th Asilomar Conf., 1185 (1994); Boyd, IEEE Trans. CAS 33, 1018 (1986).
 struct GeometricComb {
   static constexpr std::string_view name = "geometric_comb", title = "geometric comb";
