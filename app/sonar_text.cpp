@@ -63,9 +63,15 @@ std::string pulse_text(const Scenario& s, int transmitter) {
   constexpr const char* windows[] = {"no window", "Hann window", "Tukey window"};
   const PulseSettings& settings = pulse_of(s, transmitter);
   const Pulse pulse(settings);
-  return fmt::format("pulse      {}, {:g} Hz, {:g} s, {}, band {:g} Hz\n",
+  // Of tones at once, and of a train: the source level is that of the peak.
+  const double below = pulse.below_a_tone_db();
+  const std::string weaker =
+      below > 0.05 && !samples_of(settings.waveform)
+          ? fmt::format(", {:.1f} dB less energy than a tone of its peak", below)
+          : "";
+  return fmt::format("pulse      {}, {:g} Hz, {:g} s, {}, band {:g} Hz{}\n",
                      title_of(settings.waveform), pulse.centre_frequency(), pulse.duration(),
-                     windows[static_cast<int>(settings.window)], pulse.bandwidth_40db());
+                     windows[static_cast<int>(settings.window)], pulse.bandwidth_40db(), weaker);
 }
 
 /// ", 150 m deep" of what does not hang where its platform is; "" of what does.

@@ -83,6 +83,41 @@ Lfm::operator Value() const {
 Hfm::operator Value() const {
   return window_of(sweep("hfm", start_frequency, end_frequency), *this).value();
 }
+Sfm::operator Value() const {
+  return window_of(Settings("sfm")
+                       .put("frequency", frequency)
+                       .put("swing", swing)
+                       .put("modulation_frequency", modulation_frequency)
+                       .put("end_modulation_frequency", end_modulation_frequency),
+                   *this)
+      .value();
+}
+Costas::operator Value() const {
+  Settings settings = Settings("costas").put("frequency", frequency);
+  if (!order.empty()) settings.put("order", order);
+  return window_of(settings.put("prime", prime).put("root", root).put("step", step), *this).value();
+}
+Ptfm::operator Value() const {
+  return window_of(sweep("ptfm", start_frequency, end_frequency).put("sweeps", sweeps), *this)
+      .value();
+}
+GeometricComb::operator Value() const {
+  return window_of(sweep("geometric_comb", start_frequency, end_frequency)
+                       .put("lines", lines)
+                       .put("gap_ratio", gap_ratio),
+                   *this)
+      .value();
+}
+PulseTrain::operator Value() const {
+  return window_of(Settings("pulse_train")
+                       .put("frequency", frequency)
+                       .put("start_frequency", start_frequency)
+                       .put("end_frequency", end_frequency)
+                       .put("pulses", pulses)
+                       .put("pulse_duration", pulse_duration),
+                   *this)
+      .value();
+}
 PulseFile::operator Value() const { return Settings("file").put("file", file).value(); }
 
 Platform::operator Value() const {

@@ -56,6 +56,13 @@ BeamGrid within_memory(BeamGrid grid, const Baseband& baseband, std::size_t filt
   return grid;
 }
 
+/// What is left out on either side of a cell because the pulse's own answer goes on there [s].
+double guard_of(const Replica& replica, const NormaliserSettings& settings) {
+  const double cell = 1.0 / replica.noise_bandwidth();
+  return reach_of_answer(replica, settings.guard_cells * cell,
+                         (settings.guard_cells + settings.reference_cells) * cell);
+}
+
 /// Beams are steered about the middle of the phones, so that an echo comes at one time in all of
 /// them, also on a line that is towed far behind the point that delays refer to.
 class Search {
@@ -76,7 +83,8 @@ class Search {
         weights_(shading(phones_, settings.shading == Shading::hann)),
         bank_(replica, dopplers, baseband, settings.sub_bands),
         cell_(bank_.sample_rate() / replica.noise_bandwidth() * settings.sub_bands),
-        estimator_(settings.normaliser, cell_, settings.sub_bands),
+        guard_(guard_of(replica, settings.normaliser)),
+        estimator_(settings.normaliser, cell_, bank_.sample_rate() * guard_, settings.sub_bands),
         channels_(channel_spectra(baseband)),
         across_(shape_, phones_, weights_, grid_.looks, wavelength_,
                 settings.normaliser.across_beams ? bank_.filters() : 0, bank_.samples(), cell_),
@@ -129,7 +137,7 @@ class Search {
     };
     static_cast<void>(independent_peaks(peaks, leaks, keep, beam_leak,
                                         power_from_db(settings_.leak_margin_db),
-                                        settings_.most_detections));
+                                        settings_.most_detections, guard_ > 0.0));
     std::sort(result.detections.begin(), result.detections.end(),
               [](const Detection& a, const Detection& b) {
                 return std::tuple(a.time, a.doppler, a.level_db) <
@@ -327,6 +335,7 @@ class Search {
   std::vector<double> weights_;
   MatchedFilterBank bank_;
   double cell_;  // samples of its output
+  double guard_;  // what a pulse of a long answer leaves out [s]; 0 of others
   BackgroundEstimator estimator_;
   BeamSpectra channels_;
   AcrossBeams across_;

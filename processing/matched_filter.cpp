@@ -125,6 +125,75 @@ double doppler_cell(const Replica& replica, int sub_bands) {
   return offset_of_response(replica, std::numbers::sqrt2 / 2.0, 0.1, sub_bands);
 }
 
+namespace {
+
+/// |χ(τ, 1)|² at even delays from 0 to the pulse's length.
+struct AnswerOverDelay {
+  double step = 0.0;  // [s]
+  std::vector<double> power;
+};
+AnswerOverDelay answer_over_delay(const Replica& replica) {
+  const CrossSpectrum cross(replica, 1.0);
+  const std::size_t n = fast_fft_length(4 * cross.bins.size());
+  FftBuffer<std::complex<double>> work(n);
+  std::copy(cross.bins.begin(), cross.bins.end(), work.data());
+  ComplexFft<double>(n).inverse(work.data());
+  AnswerOverDelay found{.step = 1.0 / (static_cast<double>(n) * cross.spacing), .power = {}};
+  for (std::size_t i = 0; i < n / 2 && static_cast<double>(i) * found.step <= replica.duration();
+       ++i)
+    found.power.push_back(std::norm(work[i]) / std::norm(work[0]));
+  return found;
+}
+
+/// Takes answers at rising offsets. Past the first below a quarter it remembers the loudest to
+/// which they have risen.
+class NailFinder {
+ public:
+  void look(double offset, double power) {
+    fallen_ = fallen_ || power < 0.25;
+    if (fallen_ && power > before_ && power > found.power)
+      found = {.offset = offset, .power = power};
+    before_ = power;
+  }
+  Nail found;
+
+ private:
+  bool fallen_ = false;
+  double before_ = 1.0;
+};
+
+}  // namespace
+
+double reach_of_answer(const Replica& replica, double first, double last) {
+  constexpr double heard = 4e-3, silent = 1e-3;
+  const AnswerOverDelay answer = answer_over_delay(replica);
+  double sum = 0.0, count = 0.0, reach = 0.0;
+  for (std::size_t i = 1; i < answer.power.size(); ++i) {
+    const double delay = static_cast<double>(i) * answer.step;
+    if (answer.power[i] > silent) reach = delay;
+    if (delay < first || delay > last) continue;
+    sum += answer.power[i];
+    count += 1.0;
+  }
+  return sum > heard * count ? reach : 0.0;
+}
+
+Nail nail_in_delay(const Replica& replica) {
+  const AnswerOverDelay answer = answer_over_delay(replica);
+  NailFinder finder;
+  for (std::size_t i = 1; i < answer.power.size(); ++i)
+    finder.look(static_cast<double>(i) * answer.step, answer.power[i]);
+  return finder.found;
+}
+
+Nail nail_in_doppler(const Replica& replica, double span) {
+  const double step = 0.25 * doppler_cell(replica);
+  NailFinder finder;
+  for (int k = 1; k <= 800 && k * step <= span; ++k)
+    finder.look(k * step, std::pow(doppler_answer(replica, 1.0 + k * step).response, 2.0));
+  return finder.found;
+}
+
 std::vector<double> ambiguity(const Replica& replica, std::span<const double> delays,
                               std::span<const double> dopplers) {
   std::vector<double> surface;

@@ -27,6 +27,21 @@ struct DopplerAnswer {
 /// Half the span of factors in which a filter answers within 3 dB.
 [[nodiscard]] double doppler_cell(const Replica& replica, int sub_bands = 1);
 
+/// How far around an echo a background must be left out that the filter's own answer to it would
+/// otherwise be: 0 where that is below −24 dB in the mean between two delays, else the last delay
+/// with an answer over −30 dB. Side lobes of sweeps and tones are; those of combs, trains and
+/// Costas pulses reach as far as the pulse is long. \param first, last  of the background [s]
+[[nodiscard]] double reach_of_answer(const Replica& replica, double first, double last);
+
+/// The loudest answer beside the echo's own, past where it has fallen below a quarter of it.
+struct Nail {
+  double offset = 0.0;  ///< of the delay [s], or of the Doppler factor
+  double power = 0.0;   ///< of the answer, 1 at the echo
+};
+[[nodiscard]] Nail nail_in_delay(const Replica& replica);
+/// \param span  of offsets of the factor; at most the first 200 resolution cells of it
+[[nodiscard]] Nail nail_in_doppler(const Replica& replica, double span);
+
 /// Ambiguity surface |χ(τ, η)|² of a pulse: the answer of the filter matched to η = 1 to an echo of
 /// factor η and delay τ. \return [dopplers × delays], 1 at (0, 1)
 [[nodiscard]] std::vector<double> ambiguity(const Replica& replica, std::span<const double> delays,

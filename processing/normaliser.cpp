@@ -60,10 +60,11 @@ double cfar_multiplier(double false_alarm_probability, double cells, int looks) 
   return cells * std::expm1(-std::log(false_alarm_probability) / cells);
 }
 
-BackgroundEstimator::BackgroundEstimator(const NormaliserSettings& settings, double cell, int looks)
+BackgroundEstimator::BackgroundEstimator(const NormaliserSettings& settings, double cell,
+                                         double guard, int looks)
     : settings_(settings), put_back_(mean_of_clipped(looks)) {
   check_settings(settings);
-  guard_ = static_cast<std::size_t>(std::ceil(settings.guard_cells * cell));
+  guard_ = static_cast<std::size_t>(std::ceil(std::max(settings.guard_cells * cell, guard)));
   reference_ = static_cast<std::size_t>(std::max(1.0, std::round(settings.reference_cells * cell)));
   multiplier_.push_back(std::numeric_limits<float>::infinity());
   const double worth = settings.method == Normaliser::split_window ? cells_of_clipped : 1.0;

@@ -26,7 +26,7 @@ class Fields;
 /// A cell is 1/noise bandwidth of the matched filter: values so far apart are independent.
 struct NormaliserSettings {
   Normaliser method = Normaliser::split_window;
-  double guard_cells = 2.0;               ///< left out on either side: the echo itself
+  double guard_cells = 2.0;               ///< left out on either side, at least: the echo itself
   double reference_cells = 12.0;          ///< averaged on either side
   double false_alarm_probability = 1e-6;  ///< of a cell
   bool across_beams = true;  ///< compared with the beams around as well (BeamSurroundings)
@@ -43,10 +43,12 @@ struct NormaliserSettings {
 /// Compares each value of a series of powers with its surroundings.
 class BackgroundEstimator {
  public:
-  /// \param cell  samples per cell, may be a fraction
+  /// \param cell  samples per cell, may be a fraction   \param guard  samples left out on either
+  /// side where these are more than the settings'
   /// \throws InputError ("reference_cells", "guard_cells", "false_alarm_probability")
   /// \param looks  as of cfar_multiplier()
-  BackgroundEstimator(const NormaliserSettings& settings, double cell, int looks = 1);
+  BackgroundEstimator(const NormaliserSettings& settings, double cell, double guard = 0.0,
+                      int looks = 1);
 
   struct Scratch {
     std::vector<double> sums;

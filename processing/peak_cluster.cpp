@@ -75,7 +75,7 @@ std::vector<std::size_t> independent_peaks(
     const std::vector<Peak>& peaks, const LeakTable& leaks,
     const std::function<void(std::size_t)>& keep,
     const std::function<double(std::size_t, std::size_t)>& beam_leak, double margin,
-    std::size_t most) {
+    std::size_t most, bool together) {
   std::vector<std::size_t> order(peaks.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
@@ -89,6 +89,7 @@ std::vector<std::size_t> independent_peaks(
     const Peak& p = peaks[i];
     const auto sample = static_cast<std::ptrdiff_t>(p.sample);
     bool explained = false;
+    double before = 0.0;  // that those looked at so far leak together
     for (auto it = kept.lower_bound(sample - leaks.reach());
          it != kept.end() && it->first <= sample + leaks.reach() && !explained; ++it) {
       const Peak& loud = peaks[it->second];
@@ -96,8 +97,9 @@ std::vector<std::size_t> independent_peaks(
           leaks.at(sample - it->first, static_cast<std::ptrdiff_t>(p.filter) -
                                            static_cast<std::ptrdiff_t>(loud.filter));
       const double leak = std::max(in_time * beam_leak(it->second, p.beam), cleanest);
-      explained = static_cast<double>(p.power) < margin * leak * static_cast<double>(loud.power) +
-                                                     static_cast<double>(p.threshold);
+      const double all = before + leak * static_cast<double>(loud.power);
+      explained = static_cast<double>(p.power) < margin * all + static_cast<double>(p.threshold);
+      if (together) before = all;
     }
     if (explained) continue;
     kept.emplace(sample, i);

@@ -34,11 +34,14 @@ class LeakTable {
 /// \param keep       told of each that is kept, in that order (an index of `peaks`), before
 ///                    beam_leak() is asked about it
 /// \param beam_leak  power that the thing behind a kept peak leaves in a beam
-/// \param margin     factor of power   \return indices, loudest first, at most `most`
+/// \param margin     factor of power   \param together  the powers that all louder ones leak add
+/// up,
+///                    as those of a pulse that answers for long do; else each is asked alone
+/// \return indices, loudest first, at most `most`
 [[nodiscard]] std::vector<std::size_t> independent_peaks(
     const std::vector<Peak>& peaks, const LeakTable& leaks,
     const std::function<void(std::size_t kept)>& keep,
     const std::function<double(std::size_t kept, std::size_t beam)>& beam_leak, double margin,
-    std::size_t most);
+    std::size_t most, bool together = false);
 
 }  // namespace asdic::detail

@@ -117,7 +117,8 @@ void NormaliserSettings::describe(Fields& field) {
   field("normaliser", method, "estimate of the background");
   field("across_beams", across_beams,
         "compare a peak with the beams around as well, not with its own alone");
-  field("guard_cells", guard_cells, cells_beside, "left out on either side");
+  field("guard_cells", guard_cells, cells_beside,
+        "left out on either side, at least; of pulses whose filter answers longer, that long");
   field("reference_cells", reference_cells, cells_averaged, "averaged on either side");
   field("false_alarm_probability", false_alarm_probability, false_alarm_probability_of_cell,
         "of a cell of Rayleigh background");

@@ -124,7 +124,7 @@ void write_replica(Hdf5File& file, const Scenario& scenario, int transmitter, Sa
   file.set_attribute(name, "kind", name_of(settings.waveform));
   file.set_attribute(name, "centre_frequency_hz", pulse.centre_frequency());
   file.set_attribute(name, "bandwidth_hz", pulse.bandwidth_40db());
-  const auto through = frequencies_of(settings.waveform);
+  const auto through = frequencies_of(settings.waveform, settings.duration);
   file.set_attribute(
       name, "sweep_hz",
       through ? through->highest - through->lowest : std::numeric_limits<double>::quiet_NaN());

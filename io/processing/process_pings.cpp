@@ -5,11 +5,14 @@
 #include <cstdio>
 #include <limits>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "core/error.h"
 #include "core/geometry.h"
+#include "core/units.h"
+#include "processing/matched_filter.h"
 #include "raytrace/propagation.h"
 #include "sonar/scenario/carried.h"
 
@@ -174,6 +177,31 @@ void track_array(const PingProcessor& processor, const std::vector<const Process
   }
 }
 
+/// A pulse whose filter answers within 3 dB beside an echo: what stands there may be told instead.
+std::string nails(const PingProcessor& processor, int transmitter) {
+  const Replica& pulse = processor.replica(transmitter);
+  const std::span<const double> factors = processor.dopplers(transmitter);
+  const NormaliserSettings& settings = processor.settings().detector.normaliser;
+  const double cell = 1.0 / pulse.noise_bandwidth();
+  if (reach_of_answer(pulse, settings.guard_cells * cell,
+                      (settings.guard_cells + settings.reference_cells) * cell) == 0.0)
+    return "";  // a tone, a sweep
+  const Nail late = nail_in_delay(pulse),
+             fast = nail_in_doppler(pulse, factors.back() - factors.front());
+  char in_delay[80] = "", in_doppler[80] = "";
+  if (late.power > 0.5)
+    std::snprintf(in_delay, sizeof in_delay, "%.3g s off its delay at %.1f dB", late.offset,
+                  db_from_power(late.power));
+  if (fast.power > 0.5)
+    std::snprintf(in_doppler, sizeof in_doppler, "%.3g m/s off its range rate at %.1f dB",
+                  750.0 * fast.offset, db_from_power(fast.power));
+  if (*in_delay == 0 && *in_doppler == 0) return "";
+  return "pulse: its filter answers an echo " + std::string(in_delay) +
+         (*in_delay != 0 && *in_doppler != 0 ? " and " : "") + in_doppler +
+         ": a detection may be told there, further paths or noise decide" +
+         (*in_doppler != 0 ? "; a lower max_speed searches less of it" : "");
+}
+
 }  // namespace
 
 ProcessedRun process_pings(const ReceivedPings& recordings, const PingProcessor& processor,
@@ -240,6 +268,11 @@ ProcessedRun process_pings(const ReceivedPings& recordings, const PingProcessor&
       }
     if (of_array.size() > 1) track_array(processor, of_array, rows, run);
   }
+  std::set<int> senders;
+  for (const ProcessedPing& made : run.pings)
+    if (senders.insert(made.transmitter).second)
+      if (const std::string found = nails(processor, made.transmitter); !found.empty())
+        run.warnings.push_back(found);
   if (const std::string lack = processor.lack(); !lack.empty()) run.warnings.push_back(lack);
   return run;
 }

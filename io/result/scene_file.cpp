@@ -10,7 +10,9 @@
 #include "io/hdf5/environment_group.h"
 #include "io/hdf5/scale.h"
 #include "io/ping/sections.h"
+#include "processing/pulse_ambiguity.h"
 #include "raytrace/ocean/slice.h"
+#include "sonar/signal/pulse_spectrum.h"
 
 namespace asdic::detail {
 namespace {
@@ -101,6 +103,45 @@ void write_phones(Hdf5File& file, const Scenario& scenario) {
   describe(file, "arrays/phone_array", "number of the phone's array, from 0");
 }
 
+/// The first transmitter's pulse: its spectrum, and what its matched filter makes of its echoes.
+void write_pulse(Hdf5File& file, const Scenario& scenario) {
+  const PulseSettings& settings = pulse_of(scenario, 0);
+  const Pulse pulse(settings);
+  file.make_group("pulse");
+  file.set_attribute("pulse", "transmitter", scenario.transmitters.front().name);
+  file.set_attribute("pulse", "kind", title_of(settings.waveform));
+  file.set_attribute("pulse", "window", word_of(settings.window));
+  file.set_attribute("pulse", "centre_frequency_hz", pulse.centre_frequency());
+  file.set_attribute("pulse", "bandwidth_hz", pulse.bandwidth_40db());
+  file.set_attribute("pulse", "duration_s", pulse.duration());
+  file.set_attribute("pulse", "energy_s", pulse.energy());
+
+  const PulseSpectrum spectrum = pulse_spectrum(pulse, pulse.centre_frequency());
+  const auto half =
+      std::min(static_cast<std::ptrdiff_t>(0.75 * pulse.bandwidth_40db() / spectrum.bin_width),
+               static_cast<std::ptrdiff_t>(spectrum.bins.size() / 2) - 1);
+  const auto n = static_cast<std::ptrdiff_t>(spectrum.bins.size());
+  std::vector<double> frequency, power;
+  for (std::ptrdiff_t k = -half; k <= half; ++k) {
+    frequency.push_back(pulse.centre_frequency() + static_cast<double>(k) * spectrum.bin_width);
+    power.push_back(std::norm(spectrum.bins[static_cast<std::size_t>(k < 0 ? k + n : k)]));
+  }
+  write_scale(file, "pulse/frequency", "pulse_frequency", frequency, "of the spectrum", "Hz");
+  file.write<double>("pulse/spectrum", power, {power.size()});
+  describe(file, "pulse/spectrum", "energy density of the pulse, of unit peak before its window",
+           "s2");
+  file.attach_scales("pulse/spectrum", {"pulse/frequency"});
+
+  const PulseAmbiguity found = pulse_ambiguity(pulse);
+  write_scale(file, "pulse/delay", "ambiguity_delay", found.delays, "of the echo over the filter's",
+              "s");
+  write_scale(file, "pulse/doppler_factor", "ambiguity_doppler", found.dopplers,
+              "of the echo over the filter's");
+  file.write<double>("pulse/ambiguity", found.power, {found.dopplers.size(), found.delays.size()});
+  describe(file, "pulse/ambiguity", "of the filter's answer, 1 at its echo, the most in each cell");
+  file.attach_scales("pulse/ambiguity", {"pulse/doppler_factor", "pulse/delay"});
+}
+
 }  // namespace
 
 void write_tracks(Hdf5File& file, const Scenario& scenario) {
@@ -129,6 +170,7 @@ void write_scene(const std::filesystem::path& path, const Scenario& scenario) {
   write_tracks(file, scenario);
   write_beams(file, scenario);
   write_phones(file, scenario);
+  write_pulse(file, scenario);
 
   const Pulse pulse(pulse_of(scenario, 0));
   file.set_attribute("", "frequency_hz", pulse.centre_frequency());

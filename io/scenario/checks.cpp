@@ -296,7 +296,7 @@ void check_sampling(TomlTable& root, const Scenario& scenario, const PulseSettin
                         to_text(rate) + " Hz");
     return;
   }
-  const auto through = frequencies_of(settings.waveform);
+  const auto through = frequencies_of(settings.waveform, settings.duration);
   double highest = through ? through->highest * (1.0 + doppler_bound(scenario)) : 0.0;
   if (rate > 2.0 * highest)  // else it is too slow without a spectrum
     highest = received_band(scenario, Pulse(settings)).highest;

@@ -44,8 +44,8 @@ from asdic_pictures.output import Tags as _Tags
 from . import _core, described, files
 
 __all__ = ["ambiguity", "area", "array", "arrivals", "bearing_time", "compare", "detections",
-           "geometry", "levels", "matched_filter", "ppi", "pressure", "range_bearing", "rays",
-           "save", "sound_speed", "spectrogram", "study", "sweep", "tracks", "transmission_loss"]
+           "geometry", "levels", "matched_filter", "ppi", "pressure", "pulse", "range_bearing",
+           "rays", "save", "sound_speed", "spectrogram", "study", "sweep", "tracks", "transmission_loss"]
 
 
 class _Over:
@@ -285,6 +285,12 @@ def array(scenario, axes=None, **options):
     """The phones of a scenario's arrays, from above and from the side (two axes an array)."""
     with _scene(scenario) as scene:
         return _api.of_scene("array", scene, axes, **options)
+
+
+def pulse(scenario, axes=None, **options):
+    """The pulse of a scenario's first transmitter: spectrum and ambiguity surface (two axes)."""
+    with _scene(scenario) as scene:
+        return _api.of_scene("pulse", scene, axes, **options)
 
 
 def save(figure, path, *, dpi=None, force=False) -> None:

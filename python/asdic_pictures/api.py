@@ -21,7 +21,7 @@ OF_PINGS = ("rays", "pressure", "bearing_time", "ppi", "levels", "spectrogram", 
             "sweep", "detections", "range_bearing", "ambiguity", "tracks")
 PROCESSED = ("detections", "range_bearing", "ambiguity", "tracks")
 OF_RESULTS = ("transmission_loss", "arrivals", "rays")
-OF_SCENES = ("geometry", "sound_speed", "array")
+OF_SCENES = ("geometry", "sound_speed", "array", "pulse")
 OF_AREAS = _area.ALL
 OF_ALL_ARRAYS = ("rays", "levels", "ambiguity")
 WITH_LIMITS = ("pressure", "bearing_time", "ppi", "levels", "spectrogram", "matched_filter", "sweep",

@@ -40,6 +40,23 @@ class Floor:
 
 
 @dataclass
+class Pulse:
+    """What the first transmitter sends, and what its matched filter makes of echoes of it."""
+
+    transmitter: str
+    kind: str               # "LFM"
+    window: str             # "hann"
+    centre: float           # [Hz]
+    duration: float         # [s]
+    energy: float           # ∫|s|²dt of unit peak before its window [s]
+    frequency: np.ndarray   # [f] [Hz]
+    spectrum: np.ndarray    # [f] energy density
+    delay: np.ndarray       # [n] of the echo over the filter's [s]
+    doppler: np.ndarray     # [m] factor
+    ambiguity: np.ndarray   # [m, n] power, 1 at delay 0 and factor 1
+
+
+@dataclass
 class Scene:
     title: str
     sea: results.Sea
@@ -55,6 +72,7 @@ class Scene:
     receivers: tuple                    # depths, ranges [m], whether they are one by one
     origin: str = ""                    # of the map: where on the Earth it is
     floor: Floor | None = None          # of an area
+    pulse: Pulse | None = None
     tags: dict = field(default_factory=dict)
 
     @property
@@ -95,7 +113,19 @@ def read(path) -> Scene:
                      phones, numbers("source_depth"),
                      (numbers("receiver_depth"), numbers("receiver_range"),
                       bool(reader.number("irregular", 0.0))),
-                     style.on_earth(reader.file.attrs), floor_of(reader), reader.tags())
+                     style.on_earth(reader.file.attrs), floor_of(reader), pulse_of(reader),
+                     reader.tags())
+
+
+def pulse_of(reader) -> Pulse | None:
+    if not reader.has("pulse/ambiguity"):
+        return None
+    told = reader.file["pulse"].attrs
+    words = [results.text(told, name) for name in ("transmitter", "kind", "window")]
+    numbers = [float(told[name]) for name in ("centre_frequency_hz", "duration_s", "energy_s")]
+    return Pulse(*words, *numbers, *(reader.array(f"pulse/{name}") for name in
+                                     ("frequency", "spectrum", "delay", "doppler_factor",
+                                      "ambiguity")))
 
 
 def floor_of(reader) -> Floor | None:

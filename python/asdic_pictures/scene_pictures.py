@@ -1,4 +1,6 @@
-"""Pictures of a scenario before it runs: the map and a section, the sound speed, the arrays."""
+"""Pictures of a scenario before it runs: the map and a section, the sound speed, the arrays, the
+pulse.
+"""
 from __future__ import annotations
 
 import numpy as np
@@ -282,6 +284,51 @@ def array(scene: Scene, axes=None, limits=None):
     return fig
 
 
+# ------------------------------------------------------------------------------------ pulse
+
+
+def no_pulse(scene: Scene):
+    return None if scene.pulse else "no pulse without a sonar"
+
+
+def largest(values, most: int = 4000) -> tuple:
+    """Runs of values for a line of a few thousand points. → the middle of each, its largest value"""
+    run = max(values.size // most, 1)
+    kept = values[: values.size // run * run].reshape(-1, run)
+    return np.arange(kept.shape[0]) * run + run // 2, kept.max(axis=1)
+
+
+@style.picture
+def pulse(scene: Scene, axes=None, limits=None):
+    """The first transmitter's pulse: its spectrum, and its ambiguity surface."""
+    p = scene.pulse
+    fig, (above, below) = style.figure("Pulse: spectrum and ambiguity surface", 8.2, axes, nrows=2,
+                                       gridspec_kw={"height_ratios": [1.0, 1.7]})
+    low, high = limits or (-50.0, 0.0)
+    at, power = largest(p.spectrum)
+    db = 10.0 * np.log10(np.maximum(power / p.spectrum.max(), 1e-12))
+    above.plot(p.frequency[at], db, color=style.colour(0), lw=0.9)
+    above.set_xlim(p.frequency[0], p.frequency[-1])
+    above.set_ylim(low, high + 3.0)
+    above.set_xlabel("frequency / Hz")
+    above.set_ylabel("spectrum re its peak / dB")
+    above.grid(True)
+    window = "no window" if p.window == "none" else f"{p.window.capitalize()} window"
+    of = "" if len(scene.things["transmitters"].names) < 2 else f"  ·  of {style.name(p.transmitter)}"
+    style.subtitle(above, f"{scene.title}{of}  ·  {p.kind} of {p.duration:g} s about "
+                          f"{p.centre:g} Hz, {window}, energy that of {p.energy:.4g} s at its peak")
+
+    db = 10.0 * np.log10(np.maximum(p.ambiguity, 1e-12))
+    shift = p.centre * (p.doppler - 1.0)
+    mesh = style.image(below, style.cell_edges(p.delay), style.cell_edges(shift), db, (low, high))
+    style.image_frame(below)
+    below.set_xlabel("delay of the echo over the filter's / s")
+    below.set_ylabel("Doppler shift of the echo / Hz")
+    style.colour_bar(fig, mesh, below, "answer / dB", extend="min")
+    return fig
+
+
 PICTURES = {"geometry": (geometry, nothing, "Geometry: map and section"),
             "sound_speed": (sound_speed, nothing, "Sound speed"),
-            "array": (array, no_array, "The phones of each array")}
+            "array": (array, no_array, "The phones of each array"),
+            "pulse": (pulse, no_pulse, "The pulse: spectrum and ambiguity surface")}

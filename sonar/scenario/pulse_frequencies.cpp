@@ -10,7 +10,7 @@ PulseFrequencies pulse_frequencies(const Scenario& scenario) {
   for (std::size_t t = 0; t < scenario.transmitters.size(); ++t) {
     const PulseSettings& pulse = pulse_of(scenario, static_cast<int>(t));
     PulseFrequencies one;
-    if (const auto through = frequencies_of(pulse.waveform)) {
+    if (const auto through = frequencies_of(pulse.waveform, pulse.duration)) {
       one = *through;
     } else {
       const Pulse sent(pulse);

@@ -51,10 +51,15 @@ class Pulse {
   /// amounts to less than 2e-4 of the peak at any time, by a bound (found: 1e-4, −80 dB). A pulse
   /// whose edges jump has no such width, and its −40 dB bandwidth here.
   [[nodiscard]] double sampled_bandwidth() const noexcept { return sampled_bandwidth_; }
-  /// Whether it begins or ends at once, as without a window.
+  /// Whether it, or one of its parts, begins or ends at once, as without a window.
   [[nodiscard]] bool jumps_at_its_edges() const noexcept;
-  /// ∫|s₊|²dt [s]: the duration for an unwindowed pulse, 3/8 of it under a Hann window.
+  /// ∫|s₊|²dt [s]: the duration for an unwindowed pulse, 3/8 of it under a Hann window; less of
+  /// tones at once and of a train.
   [[nodiscard]] double energy() const noexcept { return energy_; }
+  /// By how much that is less than of one tone of the same duration, window and peak [dB].
+  [[nodiscard]] double below_a_tone_db() const noexcept;
+  /// Its parts; of most pulses one, the whole.
+  [[nodiscard]] const Repeats& repeats() const noexcept { return repeats_; }
   [[nodiscard]] const PulseSettings& settings() const noexcept { return settings_; }
 
  private:
@@ -62,7 +67,10 @@ class Pulse {
   double centre_frequency_ = 0.0, bandwidth_40db_ = 0.0, bandwidth_99_ = 0.0;
   double sampled_bandwidth_ = 0.0, energy_ = 0.0;
   bool sampled_ = false;
-  SampledSignal signal_;  // of a sampled one: analytic, twice oversampled, unit peak
+  Repeats repeats_;
+  std::vector<Tone> tones_;  // of one that is several at once
+  double scale_ = 1.0;       // of them, to a peak of 1
+  SampledSignal signal_;     // of a sampled one: analytic, twice oversampled, unit peak
 };
 
 /// Re s₊ sampled at the phones' rate: what a matched filter needs. \return

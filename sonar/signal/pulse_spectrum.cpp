@@ -10,15 +10,31 @@
 namespace asdic::detail {
 namespace {
 
-/// Samples across the pulse: enough for the sweep four times over, and for the tapers' kinks.
-std::size_t analysis_intervals(const PulseSettings& s) {
+/// Samples across the pulse, or one of its parts: enough for the sweep four times over, and for the
+/// tapers' kinks. Of short parts of a long pulse fewer, so that all of it is at most 2¹⁷.
+std::size_t analysis_intervals(const PulseSettings& s, const Repeats& repeats) {
   if (const auto own = samples_of(s.waveform)) return 2 * own->samples.size();
-  const PulseFrequencies through = *frequencies_of(s.waveform);
+  const PulseFrequencies through = *frequencies_of(s.waveform, s.duration);
   const double sweep = through.highest - through.lowest;
   const double taper =
       s.window == PulseWindow::tukey && s.tukey_fraction > 0.0 ? s.tukey_fraction : 1.0;
-  const double intervals = 4.0 * sweep * s.duration + std::clamp(1024.0 / taper, 4096.0, 65536.0);
-  return static_cast<std::size_t>(std::min(intervals, 4e6));
+  double for_edges = std::clamp(1024.0 / taper, 4096.0, 65536.0);
+  if (repeats.count > 1)
+    for_edges = std::clamp(131072.0 * repeats.duration / s.duration, 512.0, for_edges);
+  const double intervals = 4.0 * sweep * repeats.duration + for_edges;
+  return static_cast<std::size_t>(std::min(intervals, 4e6 * repeats.duration / s.duration + 512.0));
+}
+
+/// Σ_k e^{−i2πδ(kI − D)}·e^{i2πfD}, D = ½(n − 1)I: what n parts, keyed out of one oscillator of the
+/// frequency f, are to the one in their middle, at f + δ.
+std::complex<double> of_repeats(const Repeats& repeats, double f, double delta) {
+  const double n = repeats.count, turn = std::remainder(delta * repeats.interval, 1.0);
+  // sin(πnδI)/sin(πδI), where δI = m + turn has the sign (−1)^{m(n−1)}
+  const double m = std::round(delta * repeats.interval - turn);
+  const double sign = std::remainder(m * (n - 1.0), 2.0) == 0.0 ? 1.0 : -1.0;
+  const double sum = std::abs(turn) < 1e-9 ? n : std::sin(pi * n * turn) / std::sin(pi * turn);
+  const double late = 0.5 * (n - 1.0) * repeats.interval;
+  return std::polar(sign * sum, 2.0 * pi * std::remainder(f * late, 1.0));
 }
 
 }  // namespace
@@ -32,10 +48,13 @@ double PulseSpectrum::frequency(std::size_t k) const noexcept {
 namespace {
 
 PulseSpectrum analysed(const Pulse& pulse, double centre) {
-  const double duration = pulse.duration();
-  const std::size_t intervals = analysis_intervals(pulse.settings());
+  const Repeats& repeats = pulse.repeats();
+  const double duration = repeats.duration;
+  const std::size_t intervals = analysis_intervals(pulse.settings(), repeats);
   const double step = duration / static_cast<double>(intervals);
-  const std::size_t length = fast_fft_length(4 * intervals);
+  const std::size_t whole =
+      repeats.count == 1 ? intervals : static_cast<std::size_t>(std::ceil(pulse.duration() / step));
+  const std::size_t length = fast_fft_length(4 * whole);
   FftBuffer<std::complex<double>> x(length);
   for (std::size_t j = 0; j <= intervals; ++j) {
     // The edges are nudged inside, where the pulse has its one-sided limit, and weigh half.
@@ -56,6 +75,10 @@ PulseSpectrum analysed(const Pulse& pulse, double centre) {
   if (intervals % 2 == 1)
     for (std::size_t k = 0; k < length; ++k)
       spectrum.bins[k] *= std::polar(1.0, 2.0 * pi * spectrum.frequency(k) * 0.5 * step);
+  if (repeats.count > 1)
+    for (std::size_t k = 0; k < length; ++k)
+      spectrum.bins[k] *= of_repeats(repeats, pulse.centre_frequency(),
+                                     centre + spectrum.frequency(k) - pulse.centre_frequency());
   return spectrum;
 }
 

@@ -41,6 +41,38 @@ std::string pulse_band(const Scenario& scenario) {
   return "";
 }
 
+std::string comb_lines(const Scenario& scenario) {
+  constexpr double greatest_offset = 0.04;  // of a Doppler factor from 1: 30 m/s
+  for (std::size_t t = 0; t < scenario.transmitters.size(); ++t) {
+    const PulseSettings& settings = pulse_of(scenario, static_cast<int>(t));
+    const std::vector<Tone> tones = tones_of(settings.waveform);
+    int most = 0;
+    double at = 1.0;
+    for (const Tone& from : tones)
+      for (const Tone& to : tones) {
+        const double factor = to.frequency / from.frequency;
+        if (&from == &to || std::abs(factor - 1.0) > greatest_offset) continue;
+        int meeting = 0;  // to half of a line's width
+        for (const Tone& sent : tones)
+          for (const Tone& other : tones)
+            meeting +=
+                std::abs(factor * sent.frequency - other.frequency) * settings.duration < 0.5;
+        if (meeting > most) {
+          most = meeting;
+          at = factor;
+        }
+      }
+    if (most < 2) continue;
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "pulse: a Doppler factor of %.4f puts %d of its %zu lines on others: another "
+                  "gap_ratio, fewer lines or a longer pulse keeps them apart",
+                  at, most, tones.size());
+    return text;
+  }
+  return "";
+}
+
 std::string noise_law_range(const Scenario& scenario) {
   if (!scenario.noise.law) return "";
   const PulseFrequencies pulse = pulse_frequencies(scenario);
@@ -441,14 +473,15 @@ namespace asdic::detail {
 std::vector<std::string> warnings(const Scenario& scenario) {
   const PulseFrequencies pulse = pulse_frequencies(scenario);
   std::vector<std::string> all = warnings(scenario.environment, pulse.lowest, pulse.highest);
-  add_warnings({checks::pulse_band(scenario), checks::noise_law_range(scenario),
-                checks::noise_table_band(scenario), checks::surface_scattering_range(scenario),
-                checks::reverberation_plane_waves(scenario), checks::noise_of_a_bent_line(scenario),
-                checks::noise_from_below(scenario), checks::left_out_diffraction(scenario),
-                checks::beyond_the_map(scenario), checks::wind_elsewhere(scenario),
-                checks::far_from_the_origin(scenario), checks::scattering_energy(scenario),
-                checks::planes_beside_volume(scenario)},
-               all);
+  add_warnings(
+      {checks::pulse_band(scenario), checks::comb_lines(scenario),
+       checks::noise_law_range(scenario), checks::noise_table_band(scenario),
+       checks::surface_scattering_range(scenario), checks::reverberation_plane_waves(scenario),
+       checks::noise_of_a_bent_line(scenario), checks::noise_from_below(scenario),
+       checks::left_out_diffraction(scenario), checks::beyond_the_map(scenario),
+       checks::wind_elsewhere(scenario), checks::far_from_the_origin(scenario),
+       checks::scattering_energy(scenario), checks::planes_beside_volume(scenario)},
+      all);
   return all;
 }
 

@@ -16,6 +16,8 @@ namespace checks {
 
 /// A pulse whose band reaches down to 0 Hz: written in kHz, most likely.
 [[nodiscard]] std::string pulse_band(const Scenario& scenario);
+/// A geometric comb two or more of whose lines an echo's Doppler puts on others.
+[[nodiscard]] std::string comb_lines(const Scenario& scenario);
 /// Wenz's or Knudsen's noise asked about frequencies that its curves do not have.
 [[nodiscard]] std::string noise_law_range(const Scenario& scenario);
 /// Measured noise asked about frequencies at which it was not measured: beyond its ends the level

@@ -11,7 +11,9 @@ struct Cw {
   double frequency = 4000.0;  ///< f [Hz]
 
   void describe(Fields& field);
-  [[nodiscard]] PulseFrequencies frequencies() const noexcept { return {frequency, frequency}; }
+  [[nodiscard]] PulseFrequencies frequencies(double /*duration*/) const noexcept {
+    return {frequency, frequency};
+  }
   [[nodiscard]] double phase(double t, double duration) const noexcept;
   [[nodiscard]] bool operator==(const Cw&) const = default;
 };

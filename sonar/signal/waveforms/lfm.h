@@ -13,7 +13,7 @@ struct Lfm {
   double end_frequency = 4050.0;    ///< f₂, at the trailing edge; below f₁ of a down-sweep [Hz]
 
   void describe(Fields& field);
-  [[nodiscard]] PulseFrequencies frequencies() const noexcept {
+  [[nodiscard]] PulseFrequencies frequencies(double /*duration*/) const noexcept {
     return {std::min(start_frequency, end_frequency), std::max(start_frequency, end_frequency)};
   }
   [[nodiscard]] double phase(double t, double duration) const noexcept;

@@ -298,8 +298,8 @@ const Fault faults[] = {
      "s.toml:7: environment.bottom.kind: found nothing, expected \"vacuum\", \"rigid\", \"fluid\", "
      "\"elastic\", \"grain-size\", \"table\" or \"layered\""},
     {"UnknownKind", "\"cw\"", "\"cv\"",
-     "s.toml:17: pulse.kind: found \"cv\", expected \"cw\", \"lfm\", \"hfm\" or \"file\" (did you "
-     "mean \"cw\"?)"},
+     "s.toml:17: pulse.kind: found \"cv\", expected \"cw\", \"lfm\", \"hfm\", \"sfm\", \"costas\", "
+     "\"ptfm\", \"geometric_comb\", \"pulse_train\" or \"file\" (did you mean \"cw\"?)"},
     {"OutOfRange", "beamwidth_deg = 6.0", "beamwidth_deg = 0",
      "s.toml:15: transmitter.beamwidth_deg: found 0 degrees, expected a beamwidth from 0.01 "
      "to 179 degrees"},
@@ -446,7 +446,8 @@ TEST(ScenarioReader, WrongOverridesAreReportedAsSuch) {
        "--set pulse: found a fault (Error while parsing key-value pair: encountered end-of-file), "
        "expected a TOML value"},
       {"pulse.kind=beep",
-       "--set pulse.kind: found \"beep\", expected \"cw\", \"lfm\", \"hfm\" or \"file\""},
+       "--set pulse.kind: found \"beep\", expected \"cw\", \"lfm\", \"hfm\", \"sfm\", \"costas\", "
+       "\"ptfm\", \"geometric_comb\", \"pulse_train\" or \"file\""},
   };
   for (const OverrideFault& fault : wrong) {
     const std::vector<std::string> overrides{fault.assignment};

@@ -56,6 +56,20 @@ TEST(Warnings, WhatStaysInPlanesBesideThreeDimensions) {
               testing::Contains(HasSubstr("reverberation, the numbers of bounces")));
 }
 
+// Eight lines from 3900 to 4100 Hz: the 3rd and the 4th gap of ratio 1.2 together, 49.1 Hz, are the
+// last but 3.0 Hz. Half a line is 5 Hz wide of a pulse of 0.1 s, 0.5 Hz of one of a second.
+TEST(Warnings, LinesOfACombThatMeetOthers) {
+  const auto comb = [](const std::string& duration) {
+    return of(
+        {"pulse={kind=\"geometric_comb\", start_frequency=3900, end_frequency=4100, lines=8, "
+         "window=\"hann\", duration=" +
+         duration + "}"});
+  };
+  EXPECT_THAT(comb("1.0"), IsEmpty());
+  EXPECT_THAT(comb("0.1"), ElementsAre(AllOf(HasSubstr("pulse: a Doppler factor of "),
+                                             HasSubstr("of its 8 lines on others"))));
+}
+
 TEST(Warnings, AProfileThatDoesNotCoverTheWater) {  // of 0 to 1000 m
   EXPECT_THAT(of({table(500.0, 600.0)}),
               ElementsAre(AllOf(HasSubstr("environment.sound_speed: levels from 500 to 600 m"),

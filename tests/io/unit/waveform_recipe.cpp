@@ -23,7 +23,7 @@ struct QuadraticSweep {
   double end_frequency = 4050.0;    ///< f₂ [Hz]
 
   void describe(Fields& field) { describe_sweep(field, start_frequency, end_frequency); }
-  [[nodiscard]] PulseFrequencies frequencies() const noexcept {
+  [[nodiscard]] PulseFrequencies frequencies(double /*duration*/) const noexcept {
     return {std::min(start_frequency, end_frequency), std::max(start_frequency, end_frequency)};
   }
   [[nodiscard]] double phase(double t, double duration) const noexcept {
@@ -59,7 +59,7 @@ TEST(WaveformRecipe, GoesWhereItSays) {
   EXPECT_EQ(name_of(waveform), "quadratic");
   EXPECT_EQ(title_of(waveform), "quadratic sweep");
   EXPECT_FALSE(samples_of(waveform));
-  EXPECT_EQ(frequencies_of(waveform)->highest, 3400.0);
+  EXPECT_EQ(frequencies_of(waveform, 1.0)->highest, 3400.0);
   EXPECT_EQ(phase_of(waveform, 0.0, 1.0), 0.0);
   constexpr double h = 1e-5;
   for (const double t : {0.1, 0.5, 0.9}) {
@@ -93,9 +93,21 @@ TEST(WaveformRecipe, IsReadCheckedWrittenAndTold) {
 TEST(WaveformRecipe, EveryWaveformKeepsToItsFrequencies) {
   for (const AnyWaveform& waveform :
        {AnyWaveform(Cw{350.0}), AnyWaveform(Lfm{300.0, 400.0}), AnyWaveform(Lfm{400.0, 300.0}),
-        AnyWaveform(Hfm{300.0, 400.0}), AnyWaveform(Hfm{400.0, 300.0})}) {
+        AnyWaveform(Hfm{300.0, 400.0}), AnyWaveform(Hfm{400.0, 300.0}),
+        AnyWaveform(Sfm{.frequency = 350.0, .swing = 90.0, .modulation_frequency = 3.0}),
+        AnyWaveform(Sfm{.frequency = 350.0,
+        .swing = 90.0,
+        .modulation_frequency = 3.0,
+        .end_modulation_frequency = 11.0}),
+        AnyWaveform(Costas{.frequency = 350.0}),
+        AnyWaveform(Costas{.frequency = 350.0, .order = welch_costas(7), .step = 12.5}),
+        AnyWaveform(Ptfm{.start_frequency = 400.0, .end_frequency = 300.0, .sweeps = 7}),
+        AnyWaveform(PulseTrain{.start_frequency = 300.0,
+        .end_frequency = 400.0,
+        .pulses = 4,
+        .pulse_duration = 0.5})}) {
     SCOPED_TRACE(name_of(waveform));
-    const PulseFrequencies through = *frequencies_of(waveform);
+    const PulseFrequencies through = *frequencies_of(waveform, 2.0);
     EXPECT_EQ(phase_of(waveform, 0.0, 2.0), 0.0);
     for (double t = 0.01; t < 2.0; t += 0.0317) {
       const double rate =
@@ -111,7 +123,13 @@ TEST(PulseSettings, AreWrittenAndReadBackBitForBit) {
   for (const PulseSettings& pulse :
        {PulseSettings{}, PulseSettings{.waveform = Hfm{812.3, 0.1 + 0.2}, .duration = 0.1},
         PulseSettings{.waveform = Lfm{}, .window = PulseWindow::tukey, .tukey_fraction = 1.0 / 3.0},
-        PulseSettings{.window = PulseWindow::none}}) {
+        PulseSettings{.window = PulseWindow::none},
+        PulseSettings{.waveform = Sfm{.end_modulation_frequency = 1.0 / 3.0}},
+        PulseSettings{.waveform = Costas{.order = welch_costas(13), .step = 0.1 + 0.2}},
+        PulseSettings{.waveform = Ptfm{.sweeps = 17}},
+        PulseSettings{.waveform = GeometricComb{.lines = 5, .gap_ratio = 1.0 + 1.0 / 3.0}},
+        PulseSettings{.waveform = PulseTrain{.pulses = 3, .pulse_duration = 1.0 / 3.0}},
+        PulseSettings{.waveform = PulseTrain{.start_frequency = 812.3, .end_frequency = 812.3}}}) {
     const TomlValue tree = settings_tree(pulse);
     PulseSettings again{.duration = 9.0, .window = PulseWindow::tukey};
     KnownSettings known;
@@ -124,6 +142,79 @@ TEST(PulseSettings, AreWrittenAndReadBackBitForBit) {
   KnownSettings known;
   read_settings(TomlTable(least), read, known);
   EXPECT_EQ(read.window, PulseWindow::none);
+}
+
+PulseSettings pulse_of(const std::string& text) {
+  const TomlValue root = parse_toml(text, "s.toml");
+  PulseSettings settings;
+  KnownSettings known;
+  read_settings(TomlTable(root), settings, known);
+  return settings;
+}
+
+std::string refusal_of(const std::string& text) {
+  try {
+    static_cast<void>(pulse_of(text));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(GeneratedPulses, AreReadInEachWayThatFilesSayThem) {
+  const PulseSettings listed = pulse_of(
+      "kind = \"costas\"\nfrequency = 4000\nduration = 1\norder = [1, 2, 4, 3]\nstep = 8\n");
+  EXPECT_EQ(std::get<Costas>(listed.waveform),
+            (Costas{.frequency = 4000.0, .order = {1, 2, 4, 3}, .step = 8.0}));
+  const PulseSettings welch =
+      pulse_of("kind = \"costas\"\nfrequency = 4000\nduration = 1\nprime = 11\n");
+  EXPECT_EQ(std::get<Costas>(welch.waveform).order, Costas{}.order);  // 1, 2, 4, 8, 16 − 11, …
+  const PulseSettings other =
+      pulse_of("kind = \"costas\"\nfrequency = 4000\nduration = 1\nprime = 7\nroot = 5\n");
+  EXPECT_EQ(std::get<Costas>(other.waveform).order, (std::vector<double>{1, 5, 4, 6, 2, 3}));
+  const PulseSettings tones = pulse_of(
+      "kind = \"pulse_train\"\nfrequency = 500\npulses = 3\npulse_duration = 0.1\nduration = 1\n");
+  EXPECT_EQ(
+      std::get<PulseTrain>(tones.waveform),
+      (PulseTrain{
+          .start_frequency = 500.0, .end_frequency = 500.0, .pulses = 3, .pulse_duration = 0.1}));
+}
+
+TEST(GeneratedPulses, AreRefusedWithWhatWasExpected) {
+  const std::string costas = "kind = \"costas\"\nfrequency = 4000\nduration = 1\n";
+  EXPECT_EQ(
+      refusal_of(costas + "order = [1, 2, 3]\n"),
+      "s.toml:4: order: found chips 1 and 2 as many steps apart as 2 and 3, expected a Costas "
+      "array, where no two pairs of chips are alike");
+  EXPECT_EQ(refusal_of(costas + "order = [1, 2, 2]\n"),
+            "s.toml:4: order: found others, expected each of 1 to 3 once");
+  EXPECT_EQ(refusal_of(costas + "prime = 12\n"),
+            "s.toml:4: prime: found 12, expected a prime number");
+  EXPECT_EQ(refusal_of(costas + "prime = 11\nroot = 3\n"),  // its powers are five numbers
+            "s.toml:5: root: found 3, expected a primitive root of 11");
+  EXPECT_NE(refusal_of(costas + "prime = 11\norder = [1, 2]\n"), "");
+  EXPECT_NE(refusal_of(costas).find("s.toml:1: prime: found nothing"), std::string::npos);
+  EXPECT_EQ(refusal_of("kind = \"costas\"\nfrequency = 40\nduration = 1\nprime = 11\n"),
+            "s.toml:2: frequency: found 40, expected one above 45 Hz, half of what the chips span");
+  EXPECT_EQ(refusal_of("kind = \"sfm\"\nfrequency = 100\nswing = 220\nmodulation_frequency = "
+                       "5\nduration = 1\n"),
+            "s.toml:2: frequency: found 100, expected one above 110 Hz, half of the swing");
+  EXPECT_EQ(refusal_of("kind = \"ptfm\"\nstart_frequency = 100\nend_frequency = 200\nsweeps = "
+                       "1\nduration = 1\n"),
+            "s.toml:4: sweeps: found 1, expected a whole number from 2 to 10000");
+  const std::string comb =
+      "kind = \"geometric_comb\"\nstart_frequency = 3900\nend_frequency = 4100\nduration = 1\n";
+  EXPECT_EQ(
+      refusal_of(comb + "lines = 20\ngap_ratio = 1.5\n"),
+      "s.toml:6: gap_ratio: found 1.5, expected a smaller one, fewer lines or a longer pulse: "
+      "the smallest gap is 0.04512965664480362 Hz, below 1/duration, where lines melt into one");
+  EXPECT_EQ(refusal_of(comb + "lines = 8\ngap_ratio = 1\n"),
+            "s.toml:6: gap_ratio: found 1, expected a ratio above 1 and at most 10");
+  EXPECT_EQ(refusal_of("kind = \"pulse_train\"\nfrequency = 500\npulses = 3\npulse_duration = "
+                       "0.4\nduration = 1\n"),
+            "s.toml:4: pulse_duration: found 0.4, expected at most 0.3333333333333333 s: 3 pulses "
+            "one after "
+            "another within the duration");
 }
 
 }  // namespace

@@ -193,7 +193,23 @@ TEST(PublicSettings, StructsWriteTheKeysThatFilesHave) {
                  .end_frequency = 900.0,
                  .duration = 0.1,
                  .window = "tukey",
-                 .tukey_fraction = 0.2}};
+                 .tukey_fraction = 0.2},
+      asdic::Sfm{.frequency = 1000.0,
+                 .swing = 100.0,
+                 .modulation_frequency = 20.0,
+                 .end_modulation_frequency = 30.0,
+                 .duration = 0.1},
+      asdic::Costas{.frequency = 1000.0, .order = {1, 2, 4, 3}, .duration = 0.1},
+      asdic::Costas{.frequency = 1000.0, .prime = 7, .root = 5, .step = 50.0, .duration = 0.1},
+      asdic::Ptfm{.start_frequency = 950.0, .end_frequency = 1050.0, .sweeps = 4, .duration = 0.1},
+      asdic::GeometricComb{
+          .start_frequency = 900.0, .end_frequency = 1100.0, .lines = 4, .duration = 0.1},
+      asdic::PulseTrain{.frequency = 1000.0, .pulses = 3, .pulse_duration = 0.02, .duration = 0.1},
+      asdic::PulseTrain{.start_frequency = 900.0,
+                        .end_frequency = 1100.0,
+                        .pulses = 3,
+                        .pulse_duration = 0.02,
+                        .duration = 0.1}};
   for (const asdic::Value& pulse : pulses) EXPECT_NO_THROW(built().set("pulse", pulse).validate());
   const std::vector<asdic::Value> waters = {
       asdic::SoundSpeed{

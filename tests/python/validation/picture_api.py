@@ -234,15 +234,15 @@ class Before(Case):
              "--format", "svg", "--set", "target.0.depth=300m"], capture_output=True, text=True)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertEqual(sorted(p.name for p in (self.folder / "p").iterdir()),
-                         ["array.svg", "geometry.svg", "sound_speed.svg"])
+                         ["array.svg", "geometry.svg", "pulse.svg", "sound_speed.svg"])
         done = subprocess.run([PROGRAM, "plot", str(self.folder / "none.toml")], capture_output=True,
                               text=True)
         self.assertEqual(done.returncode, 2)
         names = ("front", "bistatic", "towed_array_turn", "deep_ocean")
         for name in names if DEEP else names[:2]:
             path = str(ROOT / f"scenarios/{name}.toml")
-            for draw in (pictures.geometry, pictures.sound_speed, pictures.array):
-                if (name, draw) != ("front", pictures.array):
+            for draw in (pictures.geometry, pictures.sound_speed, pictures.array, pictures.pulse):
+                if name != "front" or draw not in (pictures.array, pictures.pulse):
                     self.assertEqual(faults(draw(path)), [], (name, draw.__name__))
 
 

@@ -140,6 +140,18 @@ TEST(Session, APingHasALevelABeamAndAWaveformOfItsOwn) {
       R"({"command": "ping", "waveform": {"kind": "lfm", "start_frequency": 980.0,
           "end_frequency": 1020.0, "duration": 0.5, "window": "hann"}})");
   EXPECT_EQ(sweep["ok"], true) << sweep;
+  for (
+      const char* pulse :
+      {R"("kind": "costas", "frequency": 1000.0, "prime": 5)",
+       R"("kind": "sfm", "frequency": 1000.0, "swing": 40.0, "modulation_frequency": 6.0)",
+       R"("kind": "ptfm", "start_frequency": 980.0, "end_frequency": 1020.0, "sweeps": 4)",
+       R"("kind": "geometric_comb", "start_frequency": 980.0, "end_frequency": 1020.0, "lines": 4)",
+       R"("kind": "pulse_train", "frequency": 1000.0, "pulses": 3, "pulse_duration": 0.1)"}) {
+    const auto said =
+        served(R"({"command": "ping", "waveform": {"duration": 0.5, "window": "hann", )" +
+               std::string(pulse) + "}}");
+    EXPECT_EQ(said["ok"], true) << said;
+  }
 }
 
 TEST(Session, APingHasATimeOfItsOwn) {

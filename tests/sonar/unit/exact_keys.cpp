@@ -82,6 +82,11 @@ TEST(ExactKeys, TellPulsesApartThatDifferInAnyNumber) {
   look(Cw{}, 3 + 1);  // duration, window, fraction; its frequency
   look(Lfm{}, 3 + 2);
   look(Hfm{}, 3 + 2);
+  look(Sfm{.end_modulation_frequency = 20.0}, 3 + 4);
+  look(Costas{.step = 20.0}, 3 + 2 + 10);
+  look(Ptfm{}, 3 + 3);
+  look(GeometricComb{}, 3 + 4);
+  look(PulseTrain{}, 3 + 4);
   look(SampledPulse{.samples = {0.5, 1.0, 0.25}, .sample_rate = 100.0}, 1 + 4);
   expect_all_differ(all);
 }

@@ -155,6 +155,14 @@ TEST(Pulse, FaultsNameTheSetting) {
   EXPECT_EQ(fault_of({.waveform = Cw{-1.0}}), "frequency");
   EXPECT_EQ(fault_of({.waveform = Lfm{.start_frequency = 0.0}}), "start_frequency");
   EXPECT_EQ(fault_of({.waveform = Hfm{.end_frequency = infinity}}), "end_frequency");
+  EXPECT_EQ(fault_of({.waveform = Sfm{.swing = 8001.0}}), "frequency");
+  EXPECT_EQ(fault_of({.waveform = Costas{.order = {1, 2, 3}}}), "order");
+  EXPECT_EQ(fault_of({.waveform = Costas{.order = {}}}), "order");
+  EXPECT_EQ(fault_of({.waveform = Costas{.step = 900.0}}), "frequency");
+  EXPECT_EQ(fault_of({.waveform = Ptfm{.sweeps = 1}}), "sweeps");
+  EXPECT_EQ(fault_of({.waveform = GeometricComb{.gap_ratio = 1.0}}), "gap_ratio");
+  EXPECT_EQ(fault_of({.waveform = GeometricComb{}, .duration = 0.05}), "gap_ratio");
+  EXPECT_EQ(fault_of({.waveform = PulseTrain{}, .duration = 0.2}), "pulse_duration");
   EXPECT_EQ(fault_of({.window = PulseWindow::tukey, .tukey_fraction = 1.1}), "tukey_fraction");
   const auto of_samples = [](std::vector<double> samples, double rate) {
     return fault_of({.waveform = SampledPulse{.samples = std::move(samples), .sample_rate = rate}});
