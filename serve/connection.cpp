@@ -178,7 +178,7 @@ class Connection::Impl {
   void queue_up(Answer&& answer) {
     active_ = engine_.clock();
     outbox_.add(std::move(answer));
-    if (outbox_.answers() == 1) write();
+    if (!writing_) write();
   }
 
   void end_with(Answer answer) {
@@ -188,12 +188,14 @@ class Connection::Impl {
 
   void write() {
     if (dropped_) return forget_answers();
+    writing_ = true;
     const std::string_view bytes = outbox_.front();
     out_.async_write_some(asio::buffer(bytes.data(), bytes.size()),
                           [this](std::error_code error, std::size_t n) { written(error, n); });
   }
 
   void written(std::error_code error, std::size_t bytes) {
+    writing_ = false;
     if (error) {
       drop();
       return forget_answers();
@@ -201,9 +203,9 @@ class Connection::Impl {
     active_ = engine_.clock();
     if (outbox_.wrote(bytes)) {
       if (worker_) worker_->wake();
-      process();
+      process();  // which may write by itself
     }
-    if (!outbox_.empty()) return write();
+    if (!outbox_.empty() && !writing_) return write();
     close_when_done();
   }
 
@@ -321,6 +323,7 @@ class Connection::Impl {
   std::string refused_;    // why the handshake was
   bool waits_ = false;     // the client would rather wait than be told "busy"
   bool reading_ = false;   // a read is under way
+  bool writing_ = false;   // a write is
   bool ended_ = false;     // the client has sent its last byte
   bool probed_ = false;    // whether it is there nevertheless
   bool deaf_ = false;      // nothing more is read

@@ -3,8 +3,10 @@
 #include "fuzz/fuzz_target.h"
 #include "io/text/toml_writer.h"
 #include "serve/command.h"
+#include "serve/commands/cancel.h"
 #include "serve/line_splitter.h"
 #include "serve/live_scenario.h"
+#include "serve/sound_request.h"
 #include "serve/update.h"
 
 // Lines of a client of `asdic serve`: a handshake, then commands. What is taken is within the
@@ -71,6 +73,18 @@ bool refused(Work work) {
 void carry_out(const Command& command) {
   check(command.fields, 1);
   read_back(command.fields);
+  if (command.name == "arrivals")
+    static_cast<void>(
+        refused([&] { static_cast<void>(read_request<ArrivalsRequest>(command.fields)); }));
+  if (command.name == "rays")
+    static_cast<void>(refused([&] {
+      const auto asked = read_request<RaysRequest>(command.fields);
+      fuzz::insist(!asked.elevations().empty(), "there are rays");
+      for (const double elevation : asked.elevations())
+        fuzz::insist(std::abs(elevation) <= 1.5708, "which go somewhere");
+    }));
+  if (command.name == "cancel")
+    static_cast<void>(refused([&] { static_cast<void>(CancelCommand::meant(command)); }));
   if (command.name != "update") return;
   LiveScenario live = sea();
   static_cast<void>(refused([&] { live.update(command.fields, 0.0); }));

@@ -173,6 +173,31 @@ TEST(Server, SaysBusyInsteadOfGrowing) {
   EXPECT_GE(busy, 10);
 }
 
+// Lines that are refused at once, between those that wait for room: each answer goes out once and
+// whole, whoever writes first.
+TEST(Server, AnswersDoNotGetMixed) {
+  Running running({"queued_pings=1"});
+  Client client(running.socket());
+  constexpr int rounds = 2000;
+  std::jthread talks([&] {
+    client.say(R"({"asdic": 1, "when_full": "wait"})");
+    for (int i = 0; i < rounds; ++i) {
+      client.say(R"({"id": 1, "command": "state"})");
+      client.say(R"({"id": 2, "command": "none"})");
+      client.say(R"({"id": 3, "command": "limits"})");
+    }
+    client.finish();
+  });
+  EXPECT_EQ(client.receive()["asdic"], 1);
+  std::map<int, int> answers;
+  for (;;) {
+    const json line = client.receive();  // throws where a line is torn
+    if (line.is_null()) break;
+    ++answers[line["id"].get<int>()];
+  }
+  EXPECT_EQ(answers, (std::map<int, int>{{1, rounds}, {2, rounds}, {3, rounds}}));
+}
+
 // One that does not read: its commands wait, others are served; the server ends in time.
 TEST(Server, ADeafClientHoldsUpNobody) {
   Running running({"answer_bytes=100000"});
