@@ -86,8 +86,10 @@ class Connection::Impl {
   /// Takes the lines that are there, then reads on. Called whenever one of them may have become
   /// possible.
   void process() {
-    while (!deaf_ && !pending_.empty() && !paused())
+    while (!deaf_ && !pending_.empty()) {
+      if (paused()) return;  // what is pending lies where the next bytes would come
       if (auto line = splitter_.take(pending_)) take(*line);
+    }
     if (deaf_ || paused() || reading_) return;
     if (ended_) {  // a last line may lack its end
       if (auto line = splitter_.rest()) take(*line);
