@@ -13,6 +13,7 @@
 #include "io/ping/provenance.h"
 #include "io/text/csv_table.h"
 #include "serve/server.h"
+#include "serve/stream/udp_outlet.h"
 #include "serve/token.h"
 
 namespace asdic::detail::app {
@@ -20,7 +21,7 @@ namespace {
 
 struct ServeOptions {
   ScenarioChoice scenario;
-  std::string socket, data_dir, output_dir, token_file, pace = "fast";
+  std::string socket, data_dir, output_dir, token_file, udp, udp_interface, pace = "fast";
   std::optional<std::uint16_t> port;
   std::optional<int> threads;
   std::vector<std::string> limits;
@@ -61,6 +62,12 @@ serve::SessionSettings settings_of(const ServeOptions& options, int threads) {
   settings.pace = serve::parse_pace(options.pace);
   settings.provenance = provenance(threads);
   settings.report = report;
+  if (!options.udp.empty()) {
+    settings.udp = std::make_shared<serve::UdpOutlet>(options.udp, options.udp_interface, report);
+    report("\"deliver\": \"udp\" goes to " + options.udp);
+  } else if (!options.udp_interface.empty()) {
+    throw UsageError("--udp-interface is for --udp; see asdic serve --help");
+  }
   return settings;
 }
 
@@ -108,6 +115,17 @@ void add_serve_command(Program& program) {
             .show_default();
         command.add_option("--output-dir", options->output_dir, "folder for the files of pings")
             .type_name("DIR");
+        command
+            .add_option(
+                "--udp", options->udp,
+                "where blocks go with \"deliver\": \"udp\" of listen: a host or a multicast "
+                "group (docs/formats/stream.md)")
+            .type_name("HOST:PORT");
+        command
+            .add_option("--udp-interface", options->udp_interface,
+                        "address of the interface that multicast leaves by; default: the system's "
+                        "choice")
+            .type_name("ADDRESS");
         command
             .add_option("--data-dir", options->data_dir,
                         "folder of files that commands may name; without it they may name none")

@@ -19,6 +19,8 @@
 
 namespace asdic::detail::serve {
 
+class BlockOutlet;
+
 /// What all sessions of a server have in common.
 struct SessionSettings {
   ScenarioSource scenario;
@@ -27,6 +29,7 @@ struct SessionSettings {
   SessionLimits limits;
   Pace pace;
   Provenance provenance;
+  std::shared_ptr<BlockOutlet> udp = {};  ///< `deliver` of `listen`; none: the starter wants none
   /// Told what is not for clients: why a file could not be written.
   std::function<void(const std::string&)> report = [](const std::string&) {};
 };
