@@ -6,10 +6,14 @@ told, block by block; what it mixes up or sends again changes nothing.
 
     ASDIC=build/ci/bin/asdic stream.py
 """
+import contextlib
+import json
 import os
 import random
 import re
+import signal
 import socket
+import struct
 import subprocess
 import sys
 import tempfile
@@ -224,6 +228,93 @@ def with_loss(truth):
         end.close()
 
 
+def wav(data):
+    """Of a whole file or a pipe. → rate, samples"""
+    check(data[:4] == b"RIFF" and data[8:16] == b"WAVEfmt ", data[:16])
+    code, channels, rate = struct.unpack_from("<HHI", data, 20)
+    check(channels == 1, "one channel")
+    begin = data.index(b"data") + 8
+    return rate, np.frombuffer(data[begin:], {1: "<i2", 3: "<f4"}[code])
+
+
+@contextlib.contextmanager
+def listening(place, *arguments, **options):
+    process = subprocess.Popen([ASDIC, "listen", "--udp", place, *arguments], stderr=subprocess.PIPE, text=True,
+                               **options)
+    process.said = process.stderr.readline()
+    check("waiting for a stream" in process.said, process.said)
+    yield process
+    process.said += process.stderr.read()
+    process.wait(30)
+    process.stderr.close()
+
+
+def by_listen_command(truth, baseband):
+    """One phone as WAV: by a file, and by a pipe."""
+    one_stream = [b for b in truth if b.number < 2]  # the first stream of the session
+    rows = np.concatenate([b.samples for b in one_stream], axis=1)
+    port = free_port()
+    place = f"127.0.0.1:{port}"
+    scale = [] if baseband else ["--full-scale", "1"]
+    with listening(place, "--phone", "4", "--wav", "phone.wav", "--force", *scale) as process:
+        with Client.start("sea.toml", "--udp", place, program=ASDIC) as client:
+            listen(client, deliver="udp")
+            client.quit()
+    check(process.returncode == 0 and "none of 2 blocks lost" in process.said, process.said)
+    rate, heard = wav(Path("phone.wav").read_bytes())
+    about = json.loads(Path("phone.wav.json").read_text())
+    check(round(about["sample_rate_hz"]) == rate and about["samples"] == heard.size, about)
+    if baseband:  # back by way of the spectrum: the positive frequencies, down by the tone
+        up = heard.size // rows.shape[1]
+        check(heard.size == up * rows.shape[1] and "as a tone of 1000 Hz" in process.said, process.said)
+        spectrum = np.fft.fft(heard * about["pascal_per_unit"])
+        spectrum[heard.size // 2:] = 0
+        times = np.arange(heard.size) / about["sample_rate_hz"]
+        back = (2 * np.fft.ifft(spectrum) * np.exp(-2j * np.pi * 1000 * times))[::up]
+        inside = slice(8, -8)
+        off = np.linalg.norm((back - rows[3])[inside]) / np.linalg.norm(rows[3][inside])
+        check(off < 0.2, f"off by {off}")  # the outermost twelfth of noise in the whole band
+    else:
+        check(heard.tobytes() == rows[3].tobytes(), "the bits of the phone, in Pa")
+        info = subprocess.run([ASDIC, "info", "phone.wav"], capture_output=True, text=True, check=True).stdout
+        check("2500" in info, info)
+    with listening(place, "--phone", "4", "--wav", "-", "--format", "16", "--seconds", "0.3",
+                   stdout=open("pipe.wav", "wb")) as process:
+        with Client.start("sea.toml", "--udp", place, program=ASDIC) as client:
+            listen(client, deliver="udp")
+            client.quit()
+    rate, piped = wav(Path("pipe.wav").read_bytes())
+    check(process.returncode == 0 and abs(piped.size / rate - 0.3) < 0.01, f"{piped.size} at {rate}: {process.said}")
+    check(3200 < np.abs(piped).max() < 3300, "a tenth of full scale, by the first second")
+    for arguments, said in ((["--phone", "9"], "--phone: found 9, expected a phone from 1 to 5"),
+                            (["--tone", "20"], "--tone: found ")):
+        with listening(place, "--wav", "no.wav", *arguments) as process:
+            with Client.start("sea.toml", "--udp", place, program=ASDIC) as client:
+                client.listen(seconds=0.5, block=BLOCK, deliver="udp")
+                client.quit()
+        check(process.returncode == 2 and said in process.said and not os.path.exists("no.wav"), process.said)
+
+
+def listen_ends():
+    place = f"127.0.0.1:{free_port()}"
+    with listening(place, "--wav", "never.wav") as process:
+        process.send_signal(signal.SIGINT)
+    check(process.returncode == 1 and "no block came" in process.said, process.said)
+    check(not os.path.exists("never.wav"), "nothing was heard")
+    with Client.start("sea.toml", "--pace", "real", "--udp", place, program=ASDIC) as client:
+        with listening(place, "--wav", "some.wav") as process:
+            client.listen(block=0.02, deliver="udp")
+            for _, _ in zip(range(10), client.blocks()):
+                pass
+            process.send_signal(signal.SIGINT)  # in the middle of it: the file is whole
+    check(process.returncode == 0 and wav(Path("some.wav").read_bytes())[1].size > 0, process.said)
+    Path("mine.wav").write_bytes(b"RIFF of another")
+    with listening(place, "--wav", "mine.wav") as process:
+        with Client.start("sea.toml", "--udp", place, program=ASDIC) as client:
+            client.listen(seconds=0.5, deliver="udp")
+    check(process.returncode == 2 and Path("mine.wav").read_bytes() == b"RIFF of another", process.said)
+
+
 def one_at_a_time():
     port = free_port()
     receiver = Receiver("127.0.0.1", port, streams=2)
@@ -289,9 +380,11 @@ def main():
             with Client.start("sea.toml", program=ASDIC) as client:
                 truth = listen(client)
             by_udp(truth)
+            by_listen_command(truth, "baseband" in samples)
             if samples != 'samples = "baseband"':
                 by_multicast(truth)
                 with_loss(truth)
+        listen_ends()
         one_at_a_time()
         stands_hostile_packets()
         os.chdir("/")
