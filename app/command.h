@@ -172,6 +172,7 @@ void add_process_command(Program& program);
 void add_study_command(Program& program);
 void add_merge_command(Program& program);
 void add_recover_command(Program& program);
+void add_listen_command(Program& program);
 void add_serve_command(Program& program);
 void add_settings_command(Program& program);
 /// Tells of the program itself. It outlives the parsing.

@@ -19,7 +19,8 @@ std::vector<CommandGroup> overview() {
             {"study", "many pings with drawn conditions: probability of detection"},
             {"merge", "put the parts of a study together"},
             {"recover", "a ping file out of what a killed run left"},
-            {"serve", "pings on command, for other programs"}}},
+            {"serve", "pings on command, for other programs"},
+            {"listen", "hear a phone of what a server sends"}}},
           {"Sound in the sea",
            {{"arrivals", "every eigenray: angles, delays, losses"},
             {"rays", "a fan of rays, and where they go"},
@@ -73,6 +74,7 @@ int run(int argc, char** argv) {
   add_merge_command(program);
   add_recover_command(program);
   add_serve_command(program);
+  add_listen_command(program);
   add_settings_command(program);
   add_help_command(program);
   return program.parse(argc, argv)();

@@ -15,6 +15,7 @@
 #include "raytrace/parallel/progress.h"
 #include "serve/command_log.h"
 #include "serve/server.h"
+#include "serve/stream/udp_outlet.h"
 #include "serve/token.h"
 
 namespace asdic::detail::app {
@@ -22,7 +23,7 @@ namespace {
 
 struct ServeOptions {
   ScenarioChoice scenario;
-  std::string socket, data_dir, output_dir, token_file, pace = "fast";
+  std::string socket, data_dir, output_dir, token_file, udp, udp_interface, pace = "fast";
   std::string log, replay;
   bool tells_scenario = false;
   std::optional<std::uint16_t> port;
@@ -68,6 +69,12 @@ serve::SessionSettings settings_of(const ServeOptions& options, int threads) {
   settings.tells_scenario = options.tells_scenario;
   if (!options.log.empty())
     settings.log = std::make_shared<serve::CommandLog>(options.log, settings);
+  if (!options.udp.empty()) {
+    settings.udp = std::make_shared<serve::UdpOutlet>(options.udp, options.udp_interface, report);
+    report("\"deliver\": \"udp\" goes to " + options.udp);
+  } else if (!options.udp_interface.empty()) {
+    throw UsageError("--udp-interface is for --udp; see asdic serve --help");
+  }
   return settings;
 }
 
@@ -140,6 +147,17 @@ void add_serve_command(Program& program) {
             .show_default();
         command.add_option("--output-dir", options->output_dir, "folder for the files of pings")
             .type_name("DIR");
+        command
+            .add_option(
+                "--udp", options->udp,
+                "where blocks go with \"deliver\": \"udp\" of listen: a host or a multicast "
+                "group (docs/formats/stream.md)")
+            .type_name("HOST:PORT");
+        command
+            .add_option("--udp-interface", options->udp_interface,
+                        "address of the interface that multicast leaves by; default: the system's "
+                        "choice")
+            .type_name("ADDRESS");
         command
             .add_option("--data-dir", options->data_dir,
                         "folder of files that commands may name; without it they may name none")

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "serve/stream/block_sink.h"
 #include "sonar/paths/enough_bounces.h"
 #include "sonar/scenario/sampling.h"
 
@@ -150,11 +151,15 @@ std::string ping_line(const ServedPing& served, const PingRecord& record,
 Answer block_answer(Listening::Block&& block, double behind) {
   OrderedJson shape{block.channels, block.samples};
   if (block.components > 1) shape.push_back(block.components);
-  const OrderedJson line{
-      {"block", block.number},
-      {"time", block.time},
-      {"samples", {{"shape", shape}, {"bytes", block.pressure.size() * sizeof(float)}}},
-      {"behind", behind}};
+  OrderedJson line{{"block", block.number},
+                   {"time", block.time},
+                   {"samples", {{"shape", shape}}},
+                   {"behind", behind}};
+  if (block.sink) {
+    block.sink->take(block);
+    return {.line = text(line)};
+  }
+  line["samples"]["bytes"] = block.pressure.size() * sizeof(float);
   return {.line = text(line), .samples = std::move(block.pressure)};
 }
 

@@ -28,7 +28,8 @@ struct ServedPing {
   bool scheduled = false;     ///< by the schedule: it answers no command
 };
 
-/// A block of what is heard, and its samples. \param behind  after its end, by the clock [s]
+/// A block of what is heard, and its samples, which go to its sink if it has one.
+/// \param behind  after its end, by the clock [s]
 [[nodiscard]] Answer block_answer(Listening::Block&& block, double behind);
 
 // One line of JSON each, without its end.

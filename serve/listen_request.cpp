@@ -16,6 +16,8 @@ void ListenRequest::describe(Fields& field) {
   field("schedule", schedule,
         "whether the pings of the scenario's schedule are sent by themselves");
   field("stop", stop, "whether no more comes");
+  field("deliver", deliver,
+        "where the samples go: to the client, or where the server sends streams");
 }
 
 SettingsList listen_settings() { return catalogue_of<ListenRequest>(); }

@@ -1,5 +1,7 @@
 #pragma once
 #include <optional>
+#include <span>
+#include <string_view>
 
 #include "core/fields.h"
 #include "core/settings_catalogue.h"
@@ -7,12 +9,20 @@
 
 namespace asdic::detail::serve {
 
+/// Where the samples of blocks go.
+enum class BlockDelivery { samples, udp };
+inline constexpr std::string_view block_delivery_words[] = {"samples", "udp"};
+constexpr std::span<const std::string_view> words(BlockDelivery /*any*/) {
+  return block_delivery_words;
+}
+
 /// The command `listen`.
 struct ListenRequest {
   double block = 0.02;            ///< of samples that are handed out together [s]
   std::optional<double> seconds;  ///< until it ends [s]; none: it does not
   bool schedule = false;          ///< pings of the schedule are sent by themselves
   bool stop = false;              ///< no more of it
+  BlockDelivery deliver = BlockDelivery::samples;
 
   void describe(Fields& field);
 };

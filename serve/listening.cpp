@@ -90,6 +90,7 @@ void Listening::begin(const Blocks& blocks, double from) {
 void Listening::end() {
   const std::lock_guard lock(mutex_);
   active_ = false;
+  blocks_.sink.reset();
 }
 
 std::optional<Listening::Blocks> Listening::blocks() const {
@@ -123,6 +124,7 @@ std::optional<Listening::Block> Listening::next() {
   if (blocks_.end) samples = std::min(samples, *blocks_.end - stream_.position());
   if (samples <= 0) {
     active_ = false;
+    blocks_.sink.reset();
     return std::nullopt;
   }
   Block block{.number = number_++,
@@ -130,7 +132,9 @@ std::optional<Listening::Block> Listening::next() {
               .channels = stream_.channels(),
               .samples = static_cast<std::size_t>(samples),
               .components = stream_.components(),
-              .pressure = {}};
+              .pressure = {},
+              .place = stream_.place(),
+              .sink = blocks_.sink};
   block.pressure = stream_.take(block.samples);
   return block;
 }

@@ -12,6 +12,7 @@
 
 namespace asdic::detail::serve {
 
+class BlockSink;
 class SessionState;
 
 /// What a session hears, from its first `listen` on: pings that overlap, in a scenario that changes
@@ -27,15 +28,19 @@ class Listening {
  public:
   /// How the sound is handed out.
   struct Blocks {
-    std::int64_t samples = 1;         ///< of a block
-    std::optional<std::int64_t> end;  ///< sample at which it ends; none: it does not
-    bool scheduled = false;           ///< pings of the schedule are sent by themselves
+    std::int64_t samples = 1;              ///< of a block
+    std::optional<std::int64_t> end;       ///< sample at which it ends; none: it does not
+    bool scheduled = false;                ///< pings of the schedule are sent by themselves
+    std::shared_ptr<BlockSink> sink = {};  ///< where the samples go; none: to the client
   };
+  using Place = LiveStream::Place;
   struct Block {
     std::int64_t number = 0;  ///< of the session, from 0
     double time = 0.0;        ///< of its first sample [s]
     std::size_t channels = 0, samples = 0, components = 1;
     std::vector<float> pressure;  ///< [channels × samples × components] [Pa]
+    Place place = {};             ///< of the phones at its first sample
+    std::shared_ptr<BlockSink> sink = {};
   };
 
   /// \param begin  [s]

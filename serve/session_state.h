@@ -22,6 +22,8 @@
 
 namespace asdic::detail::serve {
 
+class BlockOutlet;
+
 /// What all sessions of a server have in common.
 struct SessionSettings {
   ScenarioSource scenario;
@@ -33,6 +35,7 @@ struct SessionSettings {
   bool tells_scenario = false;      ///< to clients, as text (the command `save`)
   std::shared_ptr<CommandLog> log;  ///< of what is carried out; none: nothing is written
   std::shared_ptr<OutputQuota> written = std::make_shared<OutputQuota>();  ///< of files
+  std::shared_ptr<BlockOutlet> udp = {};  ///< `deliver` of `listen`; none: the starter wants none
   /// Told what is not for clients: why a file could not be written.
   std::function<void(const std::string&)> report = [](const std::string&) {};
 };

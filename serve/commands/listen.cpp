@@ -7,6 +7,8 @@
 #include "serve/listen_request.h"
 #include "serve/refusal.h"
 #include "serve/sent_ping.h"
+#include "serve/stream/block_sink.h"
+#include "sonar/scenario/sampling.h"
 
 namespace asdic::detail::serve {
 namespace {
@@ -23,6 +25,29 @@ void hand_out_now(SessionState& session) {
     session.tell(block_answer(std::move(*block), 0.0));
   }
   session.tell({.line = listening_ended_line(listening.time())});
+}
+
+/// Where the samples go; none: to the client. \throws Refusal
+std::shared_ptr<BlockSink> sink_of(const SessionState& session, const ListenRequest& request,
+                                   std::size_t samples) {
+  if (request.deliver == BlockDelivery::samples) return nullptr;
+  const std::string word =
+      in_quotes(words(request.deliver)[static_cast<std::size_t>(request.deliver)]);
+  BlockOutlet* const outlet = session.settings.udp.get();
+  if (outlet == nullptr)
+    throw Refusal("value", refusal_text("deliver", word, "\"samples\": the server has no --udp"));
+  const Scenario& scenario = session.live.state().scenario;
+  const double bytes = double(samples) * double(channels_of(scenario)) *
+                       double(recording_of(scenario).components() * sizeof(float));
+  if (bytes > double(outlet->longest_block()))
+    throw Refusal("limit", refusal_text("block", to_text(bytes) + " bytes",
+                                        "at most " + std::to_string(outlet->longest_block()) +
+                                            " bytes with \"deliver\": " + word));
+  auto sink = outlet->open(samples);
+  if (!sink)
+    throw Refusal("value", refusal_text("deliver", word + ", which another session's stream has",
+                                        "one stream at a time"));
+  return sink;
 }
 
 }  // namespace
@@ -57,6 +82,7 @@ Answer ListenCommand::run(SessionState& session, const Command& command) {
                   refusal_text("block", std::to_string(blocks.samples) + " samples",
                                "at most " + std::to_string(session.settings.limits.samples)));
   if (request.seconds) blocks.end = std::llround(*request.seconds * rate);
+  blocks.sink = sink_of(session, request, static_cast<std::size_t>(blocks.samples));
   listening.begin(blocks, now);
   Answer answer{.line = listen_line(command.id, session.live.state().scenario, listening.time(),
                                     blocks.samples)};

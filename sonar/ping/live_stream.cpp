@@ -96,6 +96,13 @@ LiveStream::Stage& LiveStream::stage_at(std::int64_t sample) {
                        [](std::int64_t at, const Stage& one) { return at < one.from; }));
 }
 
+LiveStream::Place LiveStream::place() const {
+  const auto after =
+      std::upper_bound(std::next(stages_.begin()), stages_.end(), position_,
+                       [](std::int64_t at, const Stage& one) { return at < one.from; });
+  return {.simulator = std::prev(after)->simulator, .ping = std::prev(after)->ping};
+}
+
 /// Pieces lie on a grid of absolute time, and are made whole: so they do not depend on what is
 /// taken, nor on when it is.
 void LiveStream::make_piece(Stage& stage, std::int64_t number) const {

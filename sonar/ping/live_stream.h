@@ -58,6 +58,13 @@ class LiveStream {
   /// What lies before a sample is not handed out.
   void skip_to(std::int64_t sample);
 
+  /// By whose scenario, and in the shape of which ping, the phones lie at the next sample.
+  struct Place {
+    std::shared_ptr<const PingSimulator> simulator;
+    int ping = 1;
+  };
+  [[nodiscard]] Place place() const;
+
   /// Those that are not over, in the order of their numbers.
   [[nodiscard]] std::vector<Sounding> sounding() const;
   [[nodiscard]] std::size_t bytes() const noexcept;  ///< that they take

@@ -1,0 +1,264 @@
+"""Receives a block stream of `asdic serve` (docs/formats/stream.md): standard library and numpy.
+
+    from asdic_stream import Stream
+
+    for block in Stream("239.1.2.3", 4711):        # a group; or an address of this machine
+        print(block.time, block.samples.shape, block.lost)
+
+A client's `listen` with "deliver": "udp" makes it begin. `Stream.about` is what the latest
+descriptor says: sample_rate, carrier, positions of the phones.
+"""
+import collections
+import ipaddress
+import json
+import socket
+import struct
+
+import numpy as np
+
+HEADER = struct.Struct("<2sBBIIHH")  # "AS", version, kind, sequence, block, fragment, fragments
+DESCRIPTOR, BLOCK = 0, 1
+PAYLOAD = 1408
+TYPES = {"float32": "<f4", "complex64": "<c8"}
+WINDOW = 4          # blocks later than one that lacks a piece, until it is given up
+LONGEST_GAP = 65536  # blocks or packets
+LONGEST_DELAY = 4096  # packets
+LONGEST_DESCRIPTOR = 4096  # fragments
+MOST_DESCRIPTORS = 4       # that are not whole
+
+
+class Block:
+    """Samples of all phones that were received together.
+
+    number   in the session, from 0
+    time     of the first sample [s]
+    samples  [channels × samples] pressure [Pa]: float32, or complex64 baseband
+    lost     blocks directly before it that did not come whole
+    about    the descriptor that it came after: dict
+    """
+
+    def __init__(self, number, time, samples, lost, about):
+        self.number, self.time, self.samples, self.lost = number, time, samples, lost
+        self.about = about
+
+
+def _ahead(number, of):
+    """How far a number of 32 bits, which wraps, lies after another."""
+    return (number - of + 0x80000000) % 0x100000000 - 0x80000000
+
+
+def _read(text):
+    """A descriptor; None: it is none, or tells what cannot be."""
+    try:
+        about = json.loads(text)
+        whole = [about[key] for key in ("block", "channels", "block_samples")]
+        numbers = [about[key] for key in ("time", "sample_rate")]
+        sound = (all(type(n) is int and 0 <= n < 2**53 for n in whole) and all(whole[1:])
+                 and all(type(x) in (int, float) and abs(x) < 1e300 for x in numbers) and numbers[1] > 0
+                 and about["type"] in TYPES and isinstance(about["stream"], str)
+                 and len(about["positions"]) == about["channels"] and len(about["arrays"]) > 0)
+    except (ValueError, KeyError, TypeError, RecursionError):
+        return None
+    return about if sound else None
+
+
+class Assembler:
+    """Packets in, blocks out, in order; without sockets. Whatever bytes it is fed, memory stays bounded.
+
+    packets, lost, reordered, duplicates, foreign   packets so far
+    blocks, lost_blocks                             blocks so far
+    """
+
+    def __init__(self):
+        self.packets = self.lost = self.reordered = self.duplicates = self.foreign = 0
+        self.blocks = self.lost_blocks = 0
+        self.about, self.ended = None, False
+        self._over = None       # the stream that has ended
+        self._partial = {}      # number → [first sequence, fragments, {fragment: bytes}]
+        self._descriptors = {}  # first sequence → [fragments, {fragment: bytes}]
+        self._next = self._before = self._begin = self._latest = 0
+        self._seen = set()
+
+    def take(self, packet):
+        """→ list of Block that are complete by it"""
+        if not HEADER.size < len(packet) <= HEADER.size + PAYLOAD:
+            self.foreign += 1
+            return []
+        magic, version, kind, sequence, block, fragment, fragments = HEADER.unpack_from(packet)
+        payload = packet[HEADER.size:]
+        if (magic != b"AS" or version != 1 or kind > 1 or fragment >= fragments
+                or (fragment + 1 < fragments and len(payload) != PAYLOAD)):
+            self.foreign += 1
+            return []
+        first = (sequence - fragment) % 0x100000000
+        if self.about is None or self._is_far(sequence):  # of a server that began anew: its descriptor tells
+            if kind == DESCRIPTOR:
+                return self._describe(first, fragment, fragments, payload)
+            self.foreign += self.about is not None
+            return []
+        if not self._is_new(sequence):
+            return []
+        if kind == DESCRIPTOR:
+            return self._describe(first, fragment, fragments, payload)
+        return self._put(block, first, fragment, fragments, payload)
+
+    def _is_far(self, sequence):
+        return not -LONGEST_DELAY < _ahead(sequence, self._latest) <= LONGEST_GAP
+
+    def _is_new(self, sequence):
+        step = _ahead(sequence, self._latest)
+        if step > 0:
+            self.lost += step - 1
+            self._latest = sequence
+            if len(self._seen) > 2 * LONGEST_DELAY:
+                self._seen = {s for s in self._seen if _ahead(s, sequence) > -LONGEST_DELAY}
+        elif _ahead(sequence, self._begin) < 0:
+            self.foreign += 1
+            return False
+        elif sequence in self._seen:
+            self.duplicates += 1
+            return False
+        else:
+            self.reordered += 1
+            self.lost -= self.lost > 0
+        self._seen.add(sequence)
+        self.packets += 1
+        return True
+
+    def _describe(self, first, fragment, fragments, payload):
+        if fragments > LONGEST_DESCRIPTOR:
+            self.foreign += 1
+            return []
+        known, pieces = self._descriptors.setdefault(first, (fragments, {}))
+        if known != fragments:
+            self.foreign += 1
+            return []
+        pieces.setdefault(fragment, payload)
+        if len(pieces) < fragments:
+            while len(self._descriptors) > MOST_DESCRIPTORS:
+                self._descriptors.pop(next(iter(self._descriptors)))
+            return []
+        del self._descriptors[first]
+        about = _read(b"".join(pieces[i] for i in range(fragments)))
+        if about is None:
+            self.foreign += 1
+            return []
+        given = []
+        if about.get("ended"):
+            if self.about is not None and about["stream"] == self.about["stream"] != self._over:
+                given = self._pass(about["block"])
+                self._partial.clear()
+                self.ended, self._over = True, about["stream"]
+            return given
+        if self.about is None or about["stream"] != self.about["stream"]:
+            anew = self.about is None or self._is_far(first)
+            self._partial.clear()
+            self._next, self._before, self._begin, self.ended = about["block"], 0, first, False
+            if anew:
+                self._seen = {(first + i) % 0x100000000 for i in range(fragments)}
+                self._latest = (first + fragments - 1) % 0x100000000
+                self.packets += fragments
+        elif about["block"] > self._next + LONGEST_GAP:  # it was away for long
+            given = self._pass(about["block"])
+        self.about, self._type = about, np.dtype(TYPES[about["type"]])
+        self._longest = about["channels"] * about["block_samples"] * self._type.itemsize
+        return given
+
+    def _put(self, block, first, fragment, fragments, payload):
+        number = self._next + _ahead(block, self._next % 0x100000000)
+        if (not self._next <= number <= self._next + LONGEST_GAP or _ahead(first, self._begin) < 0
+                or (fragments - 1) * PAYLOAD >= self._longest):
+            self.foreign += 1
+            return []
+        given = self._pass(number - WINDOW + 1) if number >= self._next + WINDOW else []
+        partial = self._partial.setdefault(number, (first, fragments, {}))
+        if partial[:2] != (first, fragments):
+            self.foreign += 1
+            return given
+        partial[2].setdefault(fragment, payload)
+        return given + self._whole()
+
+    def _whole(self):
+        given = []
+        while self._next in self._partial and len(self._partial[self._next][2]) == self._partial[self._next][1]:
+            _, fragments, pieces = self._partial.pop(self._next)
+            content = b"".join(pieces[i] for i in range(fragments))
+            row = self.about["channels"] * self._type.itemsize
+            if len(content) % row:
+                self.foreign += 1
+                self._lose(1)
+                continue
+            samples = np.frombuffer(content, self._type).reshape(self.about["channels"], -1)
+            after = (self._next - self.about["block"]) * self.about["block_samples"]
+            given.append(Block(self._next, self.about["time"] + after / self.about["sample_rate"], samples,
+                               self._before, self.about))
+            self._before = 0
+            self._next += 1
+            self.blocks += 1
+        return given
+
+    def _lose(self, blocks):
+        self._before += blocks
+        self.lost_blocks += blocks
+        self._next += blocks
+
+    def _pass(self, block):
+        """Whatever comes before a block is given, or lost."""
+        given = self._whole()
+        while self._next < block:
+            self._partial.pop(self._next, None)
+            known = min((n for n in self._partial if n > self._next), default=block)
+            self._lose(min(known, block) - self._next)
+            given += self._whole()
+        return given
+
+
+class Stream:
+    """Blocks as they come, until the stream has ended.
+
+    host        a group, which is joined; or an address of this machine: "0.0.0.0" for all
+    interface   address of the interface on which a group is joined
+    timeout     after so many seconds without a packet it ends with TimeoutError; None: it waits
+    """
+
+    def __init__(self, host, port, interface="", timeout=None):
+        address = ipaddress.ip_address(socket.getaddrinfo(host, port)[0][4][0])
+        self._end = socket.socket(socket.AF_INET if address.version == 4 else socket.AF_INET6, socket.SOCK_DGRAM)
+        self._end.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 24)  # the system may give less
+        if address.is_multicast:  # several on one machine may listen to it
+            self._end.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        self._end.bind((str(address), port))
+        if address.is_multicast and address.version == 4:
+            self._end.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP,
+                                 address.packed + socket.inet_aton(interface or "0.0.0.0"))
+        elif address.is_multicast:
+            self._end.setsockopt(socket.IPPROTO_IPV6, socket.IPV6_JOIN_GROUP,
+                                 address.packed + struct.pack("@I", socket.if_nametoindex(interface) if interface else 0))
+        self._end.settimeout(timeout)
+        self.assembler = Assembler()
+        self._ready = collections.deque()
+
+    @property
+    def about(self):
+        """The latest descriptor: dict; None before the first."""
+        return self.assembler.about
+
+    def __iter__(self):  # again after the end: the next stream
+        self.assembler.ended = False
+        return self
+
+    def __next__(self):
+        while not self._ready:
+            if self.assembler.ended:
+                raise StopIteration
+            self._ready.extend(self.assembler.take(self._end.recv(65536)))
+        return self._ready.popleft()
+
+    def close(self):
+        self._end.close()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()

@@ -1,0 +1,181 @@
+#include "serve/stream/assembler.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace asdic::detail::serve {
+namespace {
+
+constexpr std::size_t longest_descriptor = 4096;  // fragments
+constexpr std::size_t most_descriptors = 4;       // that are not whole
+constexpr std::int64_t longest_gap = 65536;       // blocks or packets; more is told by descriptors
+constexpr std::int64_t longest_delay = 4096;      // packets by which one may come late
+
+/// How far a number that wraps lies after another.
+std::int64_t ahead(std::uint32_t number, std::uint32_t of) {
+  return static_cast<std::int32_t>(number - of);
+}
+
+/// Of a server that began anew, or of nobody.
+bool is_far(std::int64_t step) { return step > longest_gap || step <= -longest_delay; }
+
+}  // namespace
+
+std::string Assembler::Partial::content() const {
+  std::string all;
+  for (const auto& [fragment, piece] : pieces) all += piece;
+  return all;
+}
+
+void Assembler::join(const Message& descriptor, std::int64_t block, std::size_t longest) {
+  const bool anew = !joined() || is_far(ahead(descriptor.sequence, latest_));
+  blocks_.clear();
+  lost_ = 0;
+  next_ = block;
+  longest_ = longest;
+  begin_ = descriptor.sequence;
+  if (!anew) return;
+  seen_.reset();
+  for (std::uint32_t i = 0; i < descriptor.packets; ++i) {
+    latest_ = begin_ + i;
+    seen_.set(latest_ % remembered);
+  }
+  counts_.packets += descriptor.packets;
+}
+
+void Assembler::take(std::string_view bytes, const Give& give) {
+  const auto packet = read_packet(bytes);
+  if (!packet) {
+    ++counts_.foreign;
+    return;
+  }
+  const bool describes = packet->kind == PacketKind::descriptor;
+  if (!joined() || is_far(ahead(packet->sequence, latest_))) {  // its descriptor tells
+    if (describes)
+      take_descriptor(*packet, give);
+    else if (joined())
+      ++counts_.foreign;
+    return;
+  }
+  if (!is_new(*packet)) return;
+  if (describes)
+    take_descriptor(*packet, give);
+  else
+    take_block(*packet, give);
+}
+
+/// By its number; the numbers between it and the latest one are missing, until they come.
+bool Assembler::is_new(const Packet& packet) {
+  const std::int64_t step = ahead(packet.sequence, latest_);
+  const auto bit = [](std::uint32_t sequence) { return sequence % remembered; };
+  if (step > 0) {
+    static_assert(longest_delay == remembered);
+    if (step >= longest_delay)
+      seen_.reset();
+    else
+      for (std::uint32_t s = latest_ + 1; s != packet.sequence; ++s) seen_.reset(bit(s));
+    counts_.lost += static_cast<std::uint64_t>(step - 1);
+    latest_ = packet.sequence;
+  } else if (ahead(packet.sequence, begin_) < 0) {
+    ++counts_.foreign;
+    return false;
+  } else if (seen_[bit(packet.sequence)]) {
+    ++counts_.duplicates;
+    return false;
+  } else {
+    ++counts_.reordered;
+    if (counts_.lost > 0) --counts_.lost;
+  }
+  seen_.set(bit(packet.sequence));
+  ++counts_.packets;
+  return true;
+}
+
+void Assembler::take_descriptor(const Packet& packet, const Give& give) {
+  if (packet.fragments > longest_descriptor) {
+    ++counts_.foreign;
+    return;
+  }
+  const auto place = descriptors_.try_emplace(
+      packet.first(), Partial{.first = packet.first(), .fragments = packet.fragments});
+  Partial& partial = place.first->second;
+  if (partial.fragments != packet.fragments) {
+    ++counts_.foreign;
+    return;
+  }
+  partial.pieces.try_emplace(packet.fragment, packet.payload);
+  if (!partial.whole()) {
+    if (descriptors_.size() > most_descriptors)
+      descriptors_.erase(descriptors_.begin() == place.first ? std::next(descriptors_.begin())
+                                                             : descriptors_.begin());
+    return;
+  }
+  Message message{.kind = PacketKind::descriptor,
+                  .block = joined() ? next_ + ahead(packet.block, std::uint32_t(next_))
+                                    : std::int64_t{packet.block},
+                  .sequence = packet.first(),
+                  .packets = packet.fragments,
+                  .content = partial.content()};
+  descriptors_.erase(place.first);
+  give(std::move(message));
+}
+
+void Assembler::take_block(const Packet& packet, const Give& give) {
+  const std::int64_t number = next_ + ahead(packet.block, std::uint32_t(next_));
+  if (number < next_ || number > next_ + longest_gap || ahead(packet.first(), begin_) < 0 ||
+      (packet.fragments - std::size_t{1}) * most_payload >= longest_) {
+    ++counts_.foreign;
+    return;
+  }
+  if (number >= next_ + window) pass_to(number - window + 1, give);
+  const auto place =
+      blocks_.try_emplace(number, Partial{.first = packet.first(), .fragments = packet.fragments});
+  Partial& partial = place.first->second;
+  if (partial.first != packet.first() || partial.fragments != packet.fragments) {
+    ++counts_.foreign;
+    return;
+  }
+  partial.pieces.try_emplace(packet.fragment, packet.payload);
+  if (number == next_ && partial.whole()) give_whole(give);
+}
+
+/// Blocks that are whole, one after the other, up to the first that is not.
+void Assembler::give_whole(const Give& give) {
+  while (!blocks_.empty() && blocks_.begin()->first == next_ && blocks_.begin()->second.whole()) {
+    const Partial whole = std::move(blocks_.begin()->second);
+    blocks_.erase(blocks_.begin());
+    Message message{.kind = PacketKind::block,
+                    .block = next_++,
+                    .sequence = whole.first,
+                    .packets = whole.fragments,
+                    .content = whole.content(),
+                    .lost = std::exchange(lost_, 0)};
+    ++counts_.blocks;
+    give(std::move(message));
+  }
+}
+
+/// Whatever comes before a block is given, or lost.
+void Assembler::pass_to(std::int64_t block, const Give& give) {
+  while (next_ < block) {
+    // The next that there is, or the end of it: gaps may be long.
+    const std::int64_t known = blocks_.empty() ? block : std::min(block, blocks_.begin()->first);
+    if (known == next_ && !blocks_.empty() && blocks_.begin()->second.whole()) {
+      give_whole(give);
+      continue;
+    }
+    const std::int64_t passed = std::max(known, next_ + 1) - next_;
+    if (known == next_) blocks_.erase(blocks_.begin());
+    lost_ += static_cast<std::uint64_t>(passed);
+    counts_.lost_blocks += static_cast<std::uint64_t>(passed);
+    next_ += passed;
+  }
+  give_whole(give);
+}
+
+void Assembler::finish(std::int64_t next, const Give& give) {
+  pass_to(next, give);
+  blocks_.clear();
+}
+
+}  // namespace asdic::detail::serve

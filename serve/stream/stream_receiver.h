@@ -1,0 +1,42 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "serve/stream/assembler.h"
+#include "serve/stream/descriptor.h"
+
+namespace asdic::detail::serve {
+
+/// Blocks of a stream out of its packets (docs/formats/stream.md). Another stream of the server is
+/// taken when the one before has ended, or ceased.
+class StreamReceiver {
+ public:
+  struct Block {
+    std::int64_t number = 0;
+    double time = 0.0;       ///< of its first sample [s]
+    std::uint64_t lost = 0;  ///< blocks directly before it
+    std::size_t samples = 0;
+    std::vector<float> pressure;  ///< [channels × samples × components] [Pa]
+  };
+  using Give = std::function<void(Block&&)>;
+
+  void take(std::string_view packet, const Give& give);
+
+  [[nodiscard]] const std::optional<Descriptor>& about() const noexcept { return about_; }
+  [[nodiscard]] bool ended() const noexcept { return ended_; }
+  [[nodiscard]] const Assembler::Counts& counts() const noexcept { return assembler_.counts(); }
+
+ private:
+  void described(const Assembler::Message& message, const Assembler::Give& give);
+  [[nodiscard]] std::optional<Block> block_of(const Assembler::Message& message) const;
+
+  Assembler assembler_;
+  std::optional<Descriptor> about_;
+  bool ended_ = false;
+};
+
+}  // namespace asdic::detail::serve
