@@ -27,7 +27,7 @@ constexpr std::size_t most_taps = 200;  // of a group
 constexpr int rounds = 2;               // over all groups
 constexpr double ridge = 1e-11;         // of the mean energy of a column
 constexpr double fading = 30.0;         // over the width: silence, and as much again of a slope [1]
-constexpr double worth_db = 0.5;        // a finer fit has to lower the rest by so much
+constexpr double worth_db = 1.5;        // a finer fit has to lower the rest by so much
 constexpr int parts_tried[] = {2, 4, 8, 16, 32};  // of the pulse
 
 /// 0 in what is blanked and at the record's ends, 1 inside, with slopes of a raised cosine: what a
