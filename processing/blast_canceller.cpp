@@ -27,7 +27,7 @@ constexpr std::size_t most_taps = 200;  // of a group
 constexpr int rounds = 2;               // over all groups
 constexpr double ridge = 1e-11;         // of the mean energy of a column
 constexpr double fading = 30.0;         // over the width: silence, and as much again of a slope [1]
-constexpr double worth_db = 0.5;        // a finer fit has to lower the rest by so much
+constexpr double worth_db = 1.5;        // a finer fit has to lower the rest by so much
 constexpr int parts_tried[] = {2, 4, 8, 16, 32};  // of the pulse
 
 /// 0 in what is blanked and at the record's ends, 1 inside, with slopes of a raised cosine: what a
@@ -289,6 +289,7 @@ class Canceller {
       std::vector<Group*> own;
       for (Group& group : groups_)
         if (group.number == b && group.parts > 0) own.push_back(&group);
+      int in_vain = 0;
       for (const int parts : parts_tried) {
         if (own.empty()) break;
         std::vector<Group> before;
@@ -303,13 +304,16 @@ class Canceller {
         for (const Group* group : own) freedom += group->freedom;
         const double left = left_of(own).first;
         const double by_chance = std::max(1.0 - 4.0 * freedom / numbers, 0.1);
-        if (left < had * by_chance * power_from_db(-worth_db)) continue;
+        if (left < had * by_chance * power_from_db(-worth_db)) {
+          in_vain = 0;
+          continue;
+        }
         for (std::size_t g = 0; g < own.size(); ++g) {
           add(*own[g], 1.0);
           *own[g] = std::move(before[g]);
           add(*own[g], -1.0);
         }
-        break;
+        if (++in_vain == 2) break;  // the next finer one may do it still
       }
     }
   }
