@@ -150,6 +150,13 @@ else
   verdict serve FAILED "$(tail -n 1 <<<"$said")"
 fi
 
+# 24 hours of a continuous sonar that turns all the time, as fast as it goes: no more memory after them.
+if said=$(/usr/bin/python3 tests/serve/validation/listening.py 86400 2>&1); then
+  verdict listening good "$(grep 'times as fast' <<<"$said")"
+else
+  verdict listening FAILED "$(tail -n 1 <<<"$said")"
+fi
+
 # Debian packages: what lintian says of them, and a clean Debian in which they are installed and used.
 cd "$root"
 if said=$(scripts/packages.sh "$folder/packages" 2>&1); then

@@ -84,6 +84,10 @@ bool has_motion(TomlTable& wanted) {
   return any;
 }
 
+void set_kinematics(const Kinematics& state, double time, TomlValue& table) {
+  set_kinematics(state, time, {}, table);
+}
+
 void set_motion(TomlTable& wanted, const Track& now, const MotionTime& when, TomlValue& table) {
   const double time = when.time;
   TomlValue::Array before;

@@ -28,6 +28,9 @@ struct MotionTime {
 /// key
 void set_motion(TomlTable& wanted, const Track& now, const MotionTime& when, TomlValue& table);
 
+/// A place and a velocity as the file has them: in a place, or from there on in a straight line.
+void set_kinematics(const Kinematics& state, double time, TomlValue& table);
+
 [[nodiscard]] TomlValue toml_vector(const Vec3& v);
 
 }  // namespace asdic::detail::serve

@@ -69,7 +69,8 @@ Answer ArrivalsCommand::run(SessionState& session, const Command& command) {
   if (!free && (asked.source_depth || asked.bearing_deg))
     throw Refusal("value", refusal_text(asked.source_depth ? "source_depth" : "bearing_deg", "one",
                                         "none without receiver_depth and range"));
-  const PingSimulator& simulator = session.simulator_of(session.live.state());
+  const auto known = session.simulator_of(session.live.state());
+  const PingSimulator& simulator = *known;
   const Scenario& scenario = simulator.scenario();
   Transmission sent = session.schedule.next(scenario);
   sent.time = asked.time.value_or(session.now());

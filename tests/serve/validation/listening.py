@@ -1,0 +1,193 @@
+#!/usr/bin/env python3
+"""`listen` of `asdic serve`, as a vehicle's software meets it: by the clock, for hours, by a client that is killed.
+
+Truth: what comes by the clock has the bits of what comes as fast as it can with the same times; blocks follow each
+other without a gap; memory stays what it is after the first pings.
+
+    ASDIC=build/ci/bin/asdic listening.py [SECONDS]      of the long run; default 120, ASDIC_DEEP=1: 86400
+"""
+import os
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(ROOT / "python"))
+from asdic_client import Client, Refused  # noqa: E402
+
+ASDIC = str(Path(os.environ["ASDIC"]).resolve())
+DEEP = os.environ.get("ASDIC_DEEP") == "1"
+SMALL = """title = "two pings overlap"
+seed = 5
+[environment]
+wind_speed = 8.0
+sound_speed = { kind = "isovelocity", speed = 1500.0 }
+[environment.bottom]
+depth = 1000.0
+kind = "rigid"
+[platform]
+position = [0.0, 0.0, 200.0]
+[transmitter]
+source_level_db = 200.0
+beamwidth_deg = 20.0
+[pulse]
+kind = "cw"
+frequency = 1000.0
+duration = 0.1
+window = "hann"
+[array]
+kind = "horizontal"
+phones = 4
+spacing = 0.75
+[[target]]
+name = "rock"
+position = [3000.0, 0.0, 500.0]
+strength_db = 10.0
+[noise]
+spectral_level_db = 40.0
+[pings]
+interval = 2.0
+recording_duration = 5.0
+samples = "baseband"
+baseband_rate = 200.0
+"""
+
+
+def check(passed, what):
+    if not passed:
+        sys.exit(f"not so: {what}")
+
+
+def joined(blocks):
+    times = [block.time for block in blocks]
+    ends = [block.time + block.samples.shape[1] / 200.0 for block in blocks]
+    check(np.allclose(times[1:], ends[:-1], atol=1e-9), "blocks follow each other")
+    return np.concatenate([block.samples for block in blocks], axis=1)
+
+
+def commands(client):
+    """What happens, each at its own time."""
+    client.ping(time=0.5)
+    client.ping(time=2.0)
+    client.update(time=2.5, platform={"heading_deg": 90, "speed": 3})
+    client.update(time=3.25, array={"heading_deg": 45}, wind_speed=3)
+    client.ping(time=4.0)
+    client.update(time=5.0, targets={"strength_db": 20})
+
+
+def by_the_clock(scenario):
+    with Client.start(scenario, "--pace", "4", program=ASDIC) as client:
+        answer = client.listen(block=0.125, seconds=8.0)
+        check(answer["time"] < 0.4, f"it begins at once: {answer}")
+        commands(client)
+        blocks = list(client.blocks())
+        sound = joined(blocks)
+        state = client.state()
+    with Client.start(scenario, program=ASDIC) as client:
+        client.listen(seconds=blocks[0].time + 1e-9) if blocks[0].time > 0 else None
+        before = list(client.blocks()) if blocks[0].time > 0 else []
+        client.listen(block=0.02, seconds=1e-6)
+        list(client.blocks())
+        commands(client)
+        client.listen(block=1.0, seconds=8.0)
+        fast = joined(list(client.blocks()))
+        skipped = sum(block.samples.shape[1] for block in before)
+        check(skipped == round(blocks[0].time * 200.0), "the same first sample")
+    check(np.array_equal(sound, fast), "by the clock and at once: the same bits")
+    check(state["time"] >= 8.0, f"the clock goes on: {state['time']}")
+    print(f"by the clock: {len(blocks)} blocks, {1e3 * max(block.behind for block in blocks):.0f} ms behind at most")
+
+
+def commands_without_a_time(scenario):
+    """What comes now acts from now on; nothing that was handed out changes."""
+    with Client.start(scenario, "--pace", "2", program=ASDIC) as client:
+        client.listen(block=0.05)
+        heard, sent = [], None
+        for block in client.blocks():
+            heard.append(block)
+            if len(heard) == 10:
+                sent = client.ping().answer["time"]
+                check(sent >= block.time, "a ping leaves after what is heard")
+            if len(heard) == 30:
+                try:
+                    client.ping(time=0.1)
+                    check(False, "a ping before what is heard")
+                except Refused as refused:
+                    check(refused.code == "value" and "was handed out" in str(refused), str(refused))
+                client.listen(stop=True)
+        sound = joined(heard)
+        first = round((sent - heard[0].time) * 200.0)
+        loud = np.abs(sound).max(axis=0)
+        check(loud[:max(first - 12, 1)].max() < 0.1 * loud[first:first + 80].max(), "silence before the ping")
+    print(f"now: a ping at {sent:.3f} s")
+
+
+def resident(client):
+    with open(f"/proc/{client.process.pid}/status") as status:
+        return int(next(line for line in status if line.startswith("VmRSS")).split()[1])
+
+
+def for_long(scenario, seconds):
+    """A continuous sonar under way that turns every ten seconds."""
+    with Client.start(scenario, program=ASDIC) as client:
+        after, heard, begun = None, 0.0, time.monotonic()
+        while heard < seconds:
+            client.listen(block=1.0, seconds=10.0, schedule=True)
+            for _ in client.blocks():
+                pass
+            heard += 10.0
+            client.update(platform={"heading_deg": heard % 360.0, "speed": 2.0}, array={"heading_deg": heard % 180.0})
+            if after is None and heard >= 60.0:
+                after = resident(client)
+        grown = resident(client) - after
+        check(grown < 8192 + 0.1 * after, f"{grown} kB more after {heard} s")
+        check(len(client.scheduled) >= min(1000, int(seconds / 2.0)), "pings of the schedule are told")
+        print(f"{heard:.0f} s, {heard / (time.monotonic() - begun):.0f} times as fast as the clock: {after} kB after a "
+              f"minute, {grown} kB more at the end")
+
+
+def killed(scenario, folder):
+    """Whoever is killed, what was delivered is whole."""
+    socket = folder / "s.sock"
+    with Client.start(scenario, program=ASDIC) as reference:
+        reference.listen(block=0.25, seconds=0.5, schedule=True)
+        list(reference.blocks())
+        reference.listen(block=0.25, seconds=30.0, schedule=True)
+        truth = [block.samples for block in reference.blocks()]
+    with Client.start(scenario, program=ASDIC) as client:
+        client.listen(block=0.25, seconds=0.5, schedule=True)
+        list(client.blocks())
+        client.send("listen", block=0.25, seconds=1e6, schedule=True)
+        client.receive()
+        taken = []
+        try:
+            for block in client.blocks():
+                taken.append(block.samples)
+                if len(taken) == 20:
+                    client.process.kill()
+        except ConnectionError:
+            pass
+    check(len(taken) >= 20, "blocks before the end")
+    for mine, right in zip(taken, truth):
+        check(np.array_equal(mine, right), "what was delivered is whole")
+    check(not socket.exists(), "no socket is left")
+    print(f"killed: {len(taken)} blocks were whole")
+
+
+def main():
+    seconds = float(sys.argv[1]) if len(sys.argv) > 1 else (86400.0 if DEEP else 120.0)
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        scenario = folder / "small.toml"
+        scenario.write_text(SMALL)
+        by_the_clock(scenario)
+        commands_without_a_time(scenario)
+        for_long(scenario, seconds)
+        killed(scenario, folder)
+    print("listened to: all as it should be")
+
+
+main()
