@@ -334,7 +334,7 @@ class Search {
   BeamGrid grid_;
   std::vector<double> weights_;
   MatchedFilterBank bank_;
-  double cell_;  // samples of its output
+  double cell_;   // samples of its output
   double guard_;  // what a pulse of a long answer leaves out [s]; 0 of others
   BackgroundEstimator estimator_;
   BeamSpectra channels_;

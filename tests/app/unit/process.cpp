@@ -80,23 +80,26 @@ TEST_F(Process, TellsInTheFileWhatItUsed) {
     return Hdf5File::open(folder_ / "used.h5").attribute_texts("processed", "options");
   };
   // The pulse is 0.1 s long, its record a sample more.
-  EXPECT_THAT(used(""), testing::ElementsAre(
-                            "beamformer=conventional", "shading=none", "max_speed=15",
-                            "normaliser=split-window", "across_beams=true", "guard_cells=2",
-                            "reference_cells=12", "false_alarm_probability=1e-06",
-                            testing::StartsWith("from=0.1"), "track_start=3/4", "track_stop=4",
-                            "track_acceleration=0.02", "track_max_speed=15"));
-  EXPECT_THAT(used("--beamformer mvdr --mvdr-loading-db -3 --shading hann --elevations -20:20.5 "
-                   "--max-speed 600 --normaliser cell-averaging --time-only --guard-cells 1.5 "
-                   "--reference-cells 20 --false-alarm-probability 1e-4 --from 0 --until 3 "
-                   "--target-depth 0.5km --range-speed 1490 --track-start 2/3 --track-stop 5 "
-                   "--track-acceleration 0.1 --track-max-speed 8"),
+  EXPECT_THAT(used(""),
               testing::ElementsAre(
-                  "beamformer=mvdr", "mvdr_loading_db=-3", "shading=hann", "elevations=-20:20.5",
-                  "max_speed=600", "normaliser=cell-averaging", "across_beams=false",
-                  "guard_cells=1.5", "reference_cells=20", "false_alarm_probability=0.0001",
-                  "from=0", "until=3", "target_depth=500", "range_speed=1490", "track_start=2/3",
-                  "track_stop=5", "track_acceleration=0.1", "track_max_speed=8"));
+                  "beamformer=conventional", "shading=none", "max_speed=15",
+                  "normaliser=split-window", "across_beams=true", "guard_cells=2",
+                  "reference_cells=12", "false_alarm_probability=1e-06", "cancel_direct_blast=auto",
+                  "sub_bands=1", testing::StartsWith("from=0.1"), "track_start=3/4", "track_stop=4",
+                  "track_acceleration=0.02", "track_max_speed=15"));
+  EXPECT_THAT(
+      used("--beamformer mvdr --mvdr-loading-db -3 --shading hann --elevations -20:20.5 "
+           "--max-speed 600 --normaliser cell-averaging --time-only --guard-cells 1.5 "
+           "--reference-cells 20 --false-alarm-probability 1e-4 --from 0 --until 3 "
+           "--cancel-direct-blast off --sub-bands 2 "
+           "--target-depth 0.5km --range-speed 1490 --track-start 2/3 --track-stop 5 "
+           "--track-acceleration 0.1 --track-max-speed 8"),
+      testing::ElementsAre(
+          "beamformer=mvdr", "mvdr_loading_db=-3", "shading=hann", "elevations=-20:20.5",
+          "max_speed=600", "normaliser=cell-averaging", "across_beams=false", "guard_cells=1.5",
+          "reference_cells=20", "false_alarm_probability=0.0001", "cancel_direct_blast=off",
+          "sub_bands=2", "from=0", "until=3", "target_depth=500", "range_speed=1490",
+          "track_start=2/3", "track_stop=5", "track_acceleration=0.1", "track_max_speed=8"));
 }
 
 TEST_F(Process, SaysWhatIsWrong) {

@@ -12,6 +12,7 @@
 #include <iterator>
 #include <numbers>
 #include <random>
+#include <sstream>
 
 #include "io/wav/audible.h"
 #include "io/wav/wav.h"
@@ -73,8 +74,9 @@ TEST(Audible, DoesNotDependOnTheParts) {
 }
 
 std::string bytes_of(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
+  std::ostringstream bytes;
+  bytes << std::ifstream(path, std::ios::binary).rdbuf();
+  return bytes.str();
 }
 
 // libsndfile is another reader. What a pipe got is the same, but that its header knows no end.
