@@ -146,15 +146,17 @@ TEST(Listening, AChangeActsWhereAndWhenItHappens) {
   const auto changed_at = [&](const std::string& update, float share = 0.0F) {
     return static_cast<double>(first_difference(plain, heard_with(update), share)) / rate;
   };
+  // A ping's sound is made again from the change on, without what is not heard: other sums.
+  constexpr float rounding = 1e-6F;
   EXPECT_EQ(changed_at(R"("seed": 4)"), 1.5);  // noise: at once
   EXPECT_EQ(changed_at(R"("noise": {"spectral_level_db": 41.0})"), 1.5);
   EXPECT_EQ(changed_at(R"("array": {"heading_deg": 80})"), 1.5);
   EXPECT_EQ(changed_at(R"("platform": {"velocity": [0, 2, 0]})"), 1.5);
-  EXPECT_EQ(changed_at(R"("wind_speed": 15)"), 3.0);
+  EXPECT_EQ(changed_at(R"("wind_speed": 15)", rounding), 3.0);
   const double louder = changed_at(R"("targets": {"strength_db": 43})", 1e-3F);
   EXPECT_GT(louder, 3.95);  // the whole echo; before it, the rounding of a transform
   EXPECT_LT(louder, 4.05);
-  EXPECT_GE(changed_at(R"("sound_speed": {"kind": "isovelocity", "speed": 1490})"), 6.5);
+  EXPECT_GE(changed_at(R"("sound_speed": {"kind": "isovelocity", "speed": 1490})", rounding), 6.5);
 }
 
 // A target that moves from 1.5 s on at 20 m/s is met at 2 s 10 m farther on, and 6.7 ms later.
@@ -186,7 +188,7 @@ TEST(Listening, ATargetIsWhereItIsWhenItIsStruck) {
   EXPECT_NEAR(later - echo_time(""), 2.0 * t - 4.0 + 0.05 * 0.027, 2e-3);
 }
 
-// The bits after a change are those of a session that began with the scenario that it led to.
+// After a change it is what a session hears that began with the scenario that it led to.
 TEST(Listening, AfterAChangeItIsTheScenarioItLedTo) {
   Heard changed;
   changed.listen(0.001);
@@ -205,7 +207,8 @@ TEST(Listening, AfterAChangeItIsTheScenarioItLedTo) {
     const auto &a = changed.rows[c], &b = from_the_start.rows[c];
     ASSERT_EQ(a.size(), b.size());
     const auto from = std::ptrdiff_t(2 * 1.5 * rate);
-    EXPECT_TRUE(std::equal(a.begin() + from, a.end(), b.begin() + from));
+    const std::vector<float> later(a.begin() + from, a.end()), right(b.begin() + from, b.end());
+    EXPECT_EQ(first_difference(later, right, 1e-6F), -1);
     EXPECT_FALSE(std::equal(a.begin() + from / 2, a.begin() + from, b.begin() + from / 2));
   }
 }
