@@ -15,6 +15,7 @@
 #include "raytrace/parallel/progress.h"
 #include "serve/command_log.h"
 #include "serve/server.h"
+#include "serve/stream/ring_outlet.h"
 #include "serve/stream/udp_outlet.h"
 #include "serve/token.h"
 
@@ -23,8 +24,9 @@ namespace {
 
 struct ServeOptions {
   ScenarioChoice scenario;
-  std::string socket, data_dir, output_dir, token_file, udp, udp_interface, pace = "fast";
+  std::string socket, data_dir, output_dir, token_file, udp, udp_interface, ring, pace = "fast";
   std::string log, replay;
+  double ring_size = 16.0;  // [MB]
   bool tells_scenario = false;
   std::optional<std::uint16_t> port;
   std::optional<int> threads;
@@ -74,6 +76,12 @@ serve::SessionSettings settings_of(const ServeOptions& options, int threads) {
     report("\"deliver\": \"udp\" goes to " + options.udp);
   } else if (!options.udp_interface.empty()) {
     throw UsageError("--udp-interface is for --udp; see asdic serve --help");
+  }
+  if (!options.ring.empty()) {
+    constexpr std::size_t megabyte = 1'000'000;
+    settings.ring = std::make_shared<serve::RingOutlet>(
+        options.ring, static_cast<std::size_t>(options.ring_size * megabyte));
+    report("\"deliver\": \"ring\" goes to " + options.ring);
   }
   return settings;
 }
@@ -158,6 +166,15 @@ void add_serve_command(Program& program) {
                         "address of the interface that multicast leaves by; default: the system's "
                         "choice")
             .type_name("ADDRESS");
+        command
+            .add_option("--ring", options->ring,
+                        "where blocks go with \"deliver\": \"ring\": a file that programs of this "
+                        "user map, as /dev/shm/asdic (docs/formats/stream.md)")
+            .type_name("PATH");
+        command.add_option("--ring-size", options->ring_size, "of that file, in megabytes")
+            .type_name("MB")
+            .check(between(0.1, 1e5))
+            .show_default();
         command
             .add_option("--data-dir", options->data_dir,
                         "folder of files that commands may name; without it they may name none")

@@ -1,18 +1,23 @@
 """Receives a block stream of `asdic serve` (docs/formats/stream.md): standard library and numpy.
 
-    from asdic_stream import Stream
+    from asdic_stream import Ring, Stream
 
     for block in Stream("239.1.2.3", 4711):        # a group; or an address of this machine
         print(block.time, block.samples.shape, block.lost)
 
-A client's `listen` with "deliver": "udp" makes it begin. `Stream.about` is what the latest
+    for block in Ring("/dev/shm/asdic"):           # on the same machine
+        print(block.time, block.samples.shape, block.lost)
+
+A client's `listen` with "deliver": "udp" or "ring" makes it begin. `about` is what the latest
 descriptor says: sample_rate, carrier, positions of the phones.
 """
 import collections
 import ipaddress
 import json
+import mmap
 import socket
 import struct
+import time
 
 import numpy as np
 
@@ -256,6 +261,100 @@ class Stream:
 
     def close(self):
         self._end.close()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+
+class Ring:
+    """Blocks out of the ring of a server on this machine (`asdic serve --ring PATH`), until the stream ends.
+    A stream that begins later is read from its first block.
+
+    oldest    begin with the oldest block that is there, in place of the next one that comes
+    timeout   after so many seconds without a block it ends with TimeoutError; None: it waits
+
+    Blocks whose place another had before they were read are counted in `lost` of the next one.
+    """
+
+    HEADER, SLOT = struct.Struct("<8sII9Q"), struct.Struct("<QQqdQQ")
+    SLOT_BYTES = 64
+    STREAMING, GONE = 1, 2
+
+    def __init__(self, path, oldest=False, timeout=None):
+        with open(path, "rb") as file:
+            self._map = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
+        magic, version, state, stream, written, slots, *_ = self.HEADER.unpack_from(self._map)
+        if magic != b"ASDICRNG" or version != 1:
+            raise ValueError(f"{path}: found no ring of asdic, expected one of version 1")
+        self.about, self._text_turn, self._timeout = None, None, timeout
+        self._next = self._lost = 0
+        self._stream = self._done = None  # the one that is read; the one before it
+        if state == self.STREAMING and stream % 2 == 0:
+            self._stream, self._next = stream, max(0, written - slots + 1) if oldest else written
+        elif not oldest:
+            self._done = stream
+
+    def __iter__(self):
+        return self
+
+    def __next__(self):
+        begin = time.monotonic()
+        while True:
+            _, _, state, stream, written, slots, step, first, *text = self.HEADER.unpack_from(self._map)
+            if self._stream is None and stream % 2 == 0 and stream != self._done and written > 0:
+                self._stream, self._next, self._lost = stream, 0, 0
+            if self._stream is not None:
+                if stream != self._stream:  # another one has begun
+                    self._end()
+                if written > self._next:
+                    block = self._block(self._next, written, slots, step, first, text)
+                    if block:
+                        return block
+                    continue
+                if state != self.STREAMING and self.HEADER.unpack_from(self._map)[4] == self._next:
+                    self._end()
+            elif state == self.GONE:
+                raise StopIteration
+            if self._timeout is not None and time.monotonic() > begin + self._timeout:
+                raise TimeoutError(f"no block within {self._timeout} s")
+            time.sleep(0.0005)
+
+    def _end(self):
+        self._stream, self._done = None, self._stream
+        raise StopIteration
+
+    def _block(self, n, written, slots, step, first, text):
+        """The block before which n were written; None: it was overtaken."""
+        at = first + n % slots * step
+        _, after, number, when, samples, size = self.SLOT.unpack_from(self._map, at)
+        if after == n + 1 and size <= step - self.SLOT_BYTES:
+            content = self._map[at + self.SLOT_BYTES:at + self.SLOT_BYTES + size]
+            self._describe(*text)
+            before, = struct.unpack_from("<Q", self._map, at)
+            if before == n + 1 and self.HEADER.unpack_from(self._map)[3] == self._stream:
+                rows = np.frombuffer(content, TYPES[self.about["type"]]).reshape(-1, samples)
+                block = Block(number, when, rows, self._lost, self.about)
+                self._next, self._lost = n + 1, 0
+                return block
+        ahead = max(n + 1, written - slots // 2)  # with room, so that it is not overtaken at once
+        self._lost += ahead - n
+        self._next = ahead
+        return None
+
+    def _describe(self, begin, _room, turn, size):
+        while turn != self._text_turn:
+            if turn % 2 == 0:
+                content = self._map[begin:begin + size]
+                if self.HEADER.unpack_from(self._map)[-2] == turn:
+                    self.about, self._text_turn = json.loads(content), turn
+                    return
+            *_, turn, size = self.HEADER.unpack_from(self._map)
+
+    def close(self):
+        self._map.close()
 
     def __enter__(self):
         return self

@@ -10,8 +10,8 @@
 namespace asdic::detail::serve {
 
 /// Where the samples of blocks go.
-enum class BlockDelivery { samples, udp };
-inline constexpr std::string_view block_delivery_words[] = {"samples", "udp"};
+enum class BlockDelivery { samples, udp, ring };
+inline constexpr std::string_view block_delivery_words[] = {"samples", "udp", "ring"};
 constexpr std::span<const std::string_view> words(BlockDelivery /*any*/) {
   return block_delivery_words;
 }

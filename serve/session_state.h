@@ -35,7 +35,7 @@ struct SessionSettings {
   bool tells_scenario = false;      ///< to clients, as text (the command `save`)
   std::shared_ptr<CommandLog> log;  ///< of what is carried out; none: nothing is written
   std::shared_ptr<OutputQuota> written = std::make_shared<OutputQuota>();  ///< of files
-  std::shared_ptr<BlockOutlet> udp = {};  ///< `deliver` of `listen`; none: the starter wants none
+  std::shared_ptr<BlockOutlet> udp = {}, ring = {};  ///< `deliver` of `listen`; none: not wanted
   /// Told what is not for clients: why a file could not be written.
   std::function<void(const std::string&)> report = [](const std::string&) {};
 };

@@ -33,17 +33,28 @@ std::shared_ptr<BlockSink> sink_of(const SessionState& session, const ListenRequ
   if (request.deliver == BlockDelivery::samples) return nullptr;
   const std::string word =
       in_quotes(words(request.deliver)[static_cast<std::size_t>(request.deliver)]);
-  BlockOutlet* const outlet = session.settings.udp.get();
+  BlockOutlet* const outlet = request.deliver == BlockDelivery::udp ? session.settings.udp.get()
+                                                                    : session.settings.ring.get();
   if (outlet == nullptr)
-    throw Refusal("value", refusal_text("deliver", word, "\"samples\": the server has no --udp"));
+    throw Refusal(
+        "value",
+        refusal_text("deliver", word,
+                     "\"samples\": the server has no --" +
+                         std::string(words(request.deliver)[std::size_t(request.deliver)])));
   const Scenario& scenario = session.live.state().scenario;
-  const double bytes = double(samples) * double(channels_of(scenario)) *
-                       double(recording_of(scenario).components() * sizeof(float));
-  if (bytes > double(outlet->longest_block()))
-    throw Refusal("limit", refusal_text("block", to_text(bytes) + " bytes",
-                                        "at most " + std::to_string(outlet->longest_block()) +
-                                            " bytes with \"deliver\": " + word));
-  auto sink = outlet->open(samples);
+  const BlockShape shape{.channels = channels_of(scenario),
+                         .samples = samples,
+                         .components = recording_of(scenario).components()};
+  const auto most = [&](const std::string& where, std::size_t got, const char* unit,
+                        std::size_t limit) {
+    if (got > limit)
+      throw Refusal("limit", refusal_text(where, std::to_string(got) + unit,
+                                          "at most " + std::to_string(limit) + unit +
+                                              " with \"deliver\": " + word));
+  };
+  most("deliver", shape.channels, " phones", outlet->most_channels());
+  most("block", shape.bytes(), " bytes", outlet->longest_block());
+  auto sink = outlet->open(shape);
   if (!sink)
     throw Refusal("value", refusal_text("deliver", word + ", which another session's stream has",
                                         "one stream at a time"));

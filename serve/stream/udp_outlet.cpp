@@ -4,10 +4,7 @@
 
 #include <array>
 #include <asio.hpp>
-#include <atomic>
 #include <charconv>
-#include <condition_variable>
-#include <mutex>
 #include <random>
 #include <utility>
 
@@ -15,6 +12,7 @@
 #include "core/text.h"
 #include "serve/stream/descriptor.h"
 #include "serve/stream/packets.h"
+#include "serve/stream/stream_turn.h"
 
 namespace asdic::detail::serve {
 namespace {
@@ -76,22 +74,7 @@ class UdpOutlet::Sender {
     static_cast<void>(socket_.set_option(asio::socket_base::send_buffer_size(1 << 20), error));
   }
 
-  /// \return false if another stream keeps it for longer than a moment
-  bool take() {
-    std::unique_lock lock(mutex_);
-    // A stream whose last block is on its way is over in a moment.
-    if (!free_.wait_for(lock, std::chrono::milliseconds(200), [&] { return !taken_; }))
-      return false;
-    taken_ = true;
-    return true;
-  }
-  void give_back() {
-    {
-      const std::lock_guard lock(mutex_);
-      taken_ = false;
-    }
-    free_.notify_all();
-  }
+  StreamTurn turn;
 
   void send(PacketKind kind, std::int64_t block, std::string_view message) {
     packets_.split(kind, block, message, [&](std::string_view packet) {
@@ -122,9 +105,6 @@ class UdpOutlet::Sender {
   std::function<void(const std::string&)> report_;
   Packets packets_{std::random_device{}()};  // one that begins anew is not taken for the one before
   bool failed_ = false;
-  std::mutex mutex_;
-  std::condition_variable free_;
-  bool taken_ = false;
 };
 
 class UdpOutlet::Sink : public BlockSink {
@@ -135,7 +115,7 @@ class UdpOutlet::Sink : public BlockSink {
     if (const auto end = about_.end())
       for (int i = 0; i < 3; ++i)  // one of them comes
         sender_->send(PacketKind::descriptor, about_.next(), *end);
-    sender_->give_back();
+    sender_->turn.give_back();
   }
   Sink(const Sink&) = delete;
   Sink& operator=(const Sink&) = delete;
@@ -159,10 +139,11 @@ UdpOutlet::UdpOutlet(const std::string& destination, const std::string& interfac
 UdpOutlet::~UdpOutlet() = default;
 
 std::size_t UdpOutlet::longest_block() const { return longest_message; }
+std::size_t UdpOutlet::most_channels() const { return 32768; }
 
-std::shared_ptr<BlockSink> UdpOutlet::open(std::size_t samples) {
-  if (!sender_->take()) return nullptr;
-  return std::make_shared<Sink>(sender_, samples);
+std::shared_ptr<BlockSink> UdpOutlet::open(const BlockShape& shape) {
+  if (!sender_->turn.take()) return nullptr;
+  return std::make_shared<Sink>(sender_, shape.samples);
 }
 
 class UdpReceiver::Impl {

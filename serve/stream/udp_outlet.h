@@ -18,7 +18,8 @@ class UdpOutlet : public BlockOutlet {
   ~UdpOutlet() override;
 
   [[nodiscard]] std::size_t longest_block() const override;
-  [[nodiscard]] std::shared_ptr<BlockSink> open(std::size_t samples) override;
+  [[nodiscard]] std::size_t most_channels() const override;
+  [[nodiscard]] std::shared_ptr<BlockSink> open(const BlockShape& shape) override;
 
  private:
   class Sender;

@@ -279,9 +279,10 @@ class Kept : public serve::BlockOutlet {
     serve::DescribedStream about_;
   };
   [[nodiscard]] std::size_t longest_block() const override { return 100'000; }
-  [[nodiscard]] std::shared_ptr<serve::BlockSink> open(std::size_t samples) override {
+  [[nodiscard]] std::size_t most_channels() const override { return 2; }
+  [[nodiscard]] std::shared_ptr<serve::BlockSink> open(const serve::BlockShape& shape) override {
     if (std::exchange(taken, true)) return nullptr;
-    return std::make_shared<Sink>(*this, samples);
+    return std::make_shared<Sink>(*this, shape.samples);
   }
   bool taken = false;
   std::vector<serve::Descriptor> told;

@@ -15,6 +15,7 @@ import signal
 import socket
 import struct
 import subprocess
+import stat
 import sys
 import tempfile
 import threading
@@ -27,7 +28,7 @@ ROOT = Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "python"))
 sys.path.insert(0, str(ROOT / "tests/support"))
 from asdic_client import Client, Refused  # noqa: E402
-from asdic_stream import HEADER, Assembler, Stream  # noqa: E402
+from asdic_stream import HEADER, Assembler, Ring, Stream  # noqa: E402
 from deep import DEEP  # noqa: E402
 
 ASDIC = str(Path(os.environ["ASDIC"]).resolve())
@@ -351,6 +352,98 @@ def one_at_a_time():
         check(done.returncode == 2 and done.stderr.startswith("asdic: --udp: found "), done)
 
 
+def by_ring(truth):
+    with Client.start("sea.toml", "--ring", "ring", "--ring-size", "1", program=ASDIC) as client:
+        mode = os.stat("ring").st_mode
+        check(stat.S_ISREG(mode) and stat.S_IMODE(mode) == 0o600 and os.stat("ring").st_size == 1_000_000, oct(mode))
+        received, reader = [], Ring("ring", timeout=20)
+        for seconds in (0.5, SECONDS):
+            taker = threading.Thread(target=lambda: received.extend(reader), daemon=True)
+            taker.start()
+            client.listen(seconds=seconds, block=BLOCK, deliver="ring")
+            check(all(b.samples is None for b in client.blocks()), "lines alone")
+            taker.join(30)
+            client.ping()
+            client.update(array={"name": "bow", "heading_deg": 40})
+        same_bits(received, truth)
+        check(len(reader.about["positions"]) == 5 and reader.about["block"] > 2, reader.about)
+        left = list(Ring("ring", oldest=True, timeout=20))  # what is still there
+        same_bits(left, [b for b in truth if b.number >= 2])
+        for wrong in (20, 60):
+            refused(lambda: client.listen(seconds=1, block=wrong, deliver="ring"), "limit", "at most")
+        client.quit()
+    check(not os.path.exists("ring"), "it goes with its server")
+    check(list(reader) == [], "and its readers know")
+
+
+def overtaken(truth):
+    """A reader that is slow, and one that reads while it is overtaken again and again."""
+    rows = np.concatenate([b.samples for b in truth if b.number >= 2], axis=1)
+    rate, begin = 2500, truth[2].time
+    with Client.start("sea.toml", "--ring", "ring", "--ring-size", "0.2", program=ASDIC) as client:
+        def again(seconds, **how):
+            client.listen(seconds=seconds, deliver="ring", **how)
+            return client.blocks()
+        list(again(0.5, block=BLOCK))
+        client.ping()
+        client.update(array={"name": "bow", "heading_deg": 40})
+        slow, fast = (Ring("ring", timeout=20) for _ in range(2))
+        received = []
+        taker = threading.Thread(target=lambda: received.extend(fast), daemon=True)
+        taker.start()
+        blocks = again(SECONDS, block=0.0012)  # 3 samples: 2500 blocks
+        while not slow._map[32:40].strip(b"\0"):
+            time.sleep(0.001)
+        first = next(slow)
+        lines = list(blocks)
+        slots = slow.HEADER.unpack_from(slow._map)[5]
+        taker.join(30)
+        rest = list(slow)
+        client.quit()
+    number = lines[0].number
+    check(slots < len(lines), f"{len(lines)} blocks are more than {slots} slots")
+    for heard in ([first] + rest, received):
+        told = sum(b.lost for b in heard)
+        check(told + len(heard) == len(lines), f"{told} lost, {len(heard)} heard of {len(lines)}")
+        for block in heard:
+            at = round((block.time - begin) * rate)
+            check(np.array_equal(block.samples, rows[:, at:at + block.samples.shape[1]]), "bits of the truth")
+        check([b.number for b in heard] == sorted(b.number for b in heard) and heard[0].number >= number, "in order")
+    check(sum(b.lost for b in rest) > 0, "it was overtaken, and knows")
+
+
+def keeps_what_is_not_its_own():
+    def served(path):
+        return subprocess.run([ASDIC, "serve", "sea.toml", "--ring", path], capture_output=True, text=True,
+                              stdin=subprocess.DEVNULL)
+    Path("precious").write_text("kept")
+    os.symlink("precious", "link")
+    os.mkdir("folder")
+    for path in ("precious", "link", "folder"):
+        done = served(path)
+        check(done.returncode == 2 and f"--ring {Path(path).absolute()}: found " in done.stderr, done)
+    check(Path("precious").read_text() == "kept", "it is not touched")
+    with Client.start("sea.toml", "--ring", "ring", program=ASDIC) as client:
+        done = served("ring")
+        check(done.returncode == 2 and "another server" in done.stderr, done)
+        reader = Ring("ring")
+        client.process.kill()
+        client.process.wait()
+    check(os.path.exists("ring"), "a killed server leaves it")
+    with Client.start("sea.toml", "--ring", "ring", program=ASDIC) as client:
+        check(list(reader) == [], "whoever had mapped it knows that its server has gone")
+        client.quit()
+
+
+def refused(work, code, text):
+    try:
+        work()
+    except Refused as no:
+        check(no.code == code and text in str(no), no)
+        return
+    raise AssertionError(f"not refused: {text}")
+
+
 def stands_hostile_packets():
     lot = random.Random(9)
     assembler = Assembler()
@@ -380,12 +473,15 @@ def main():
             with Client.start("sea.toml", program=ASDIC) as client:
                 truth = listen(client)
             by_udp(truth)
+            by_ring(truth)
             by_listen_command(truth, "baseband" in samples)
             if samples != 'samples = "baseband"':
                 by_multicast(truth)
                 with_loss(truth)
+                overtaken(truth)
         listen_ends()
         one_at_a_time()
+        keeps_what_is_not_its_own()
         stands_hostile_packets()
         os.chdir("/")
 
