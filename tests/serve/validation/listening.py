@@ -4,7 +4,7 @@
 Truth: what comes by the clock has the bits of what comes as fast as it can with the same times; blocks follow each
 other without a gap; memory stays what it is after the first pings.
 
-    ASDIC=build/ci/bin/asdic listening.py [SECONDS]      of the long run; default 120, ASDIC_DEEP=1: 86400
+    ASDIC=build/ci/bin/asdic listening.py [SECONDS]      of the long run; default 60, ASDIC_DEEP=1: 86400
 """
 import os
 import sys
@@ -139,13 +139,41 @@ def for_long(scenario, seconds):
                 pass
             heard += 10.0
             client.update(platform={"heading_deg": heard % 360.0, "speed": 2.0}, array={"heading_deg": heard % 180.0})
-            if after is None and heard >= 60.0:
+            if after is None and heard >= min(60.0, seconds / 2.0):
                 after = resident(client)
         grown = resident(client) - after
         check(grown < 8192 + 0.1 * after, f"{grown} kB more after {heard} s")
         check(len(client.scheduled) >= min(1000, int(seconds / 2.0)), "pings of the schedule are told")
         print(f"{heard:.0f} s, {heard / (time.monotonic() - begun):.0f} times as fast as the clock: {after} kB after a "
               f"minute, {grown} kB more at the end")
+
+
+def turns():
+    """A sea that is received as streams of noise does not change because an array turns in it: a little turn
+    changes the sound by little, 20 dB less for a tenth of it.
+    """
+    def heard(heading):
+        with Client.start(ROOT / "scenarios" / "deep_ocean.toml", "--set", "platform.velocity=[0.0, 2.5, 0.0]",
+                          "--set", "noise.spectral_level_db=-60", "--set", "target.0.strength_db=-50", "--set",
+                          "pings={samples='baseband', recording_duration=16.0}", program=ASDIC) as client:
+            client.listen(block=1.0, seconds=12.0)
+            before = list(client.blocks())
+            client.ping(time=12.0)
+            client.listen(block=1.0, seconds=10.0)
+            before += list(client.blocks())
+            if heading:
+                client.update(array={"heading_deg": heading})
+            client.listen(block=1.0, seconds=5.0)
+            return [np.concatenate([block.samples for block in part], axis=1)
+                    for part in (before, list(client.blocks()))]
+    before, straight = heard(0.0)
+    levels = []
+    for heading in (0.1, 1.0):
+        same, turned = heard(heading)
+        check(np.array_equal(before, same), "nothing before the turn")
+        levels.append(20.0 * np.log10(np.linalg.norm(turned - straight) / np.linalg.norm(straight)))
+    check(levels[0] < -30.0 and levels[1] < -10.0, f"a turn changes {levels} dB")
+    print(f"turns of 0.1 and 1 degree change the sound by {levels[0]:.0f} and {levels[1]:.0f} dB of itself")
 
 
 def killed(scenario, folder):
@@ -177,7 +205,7 @@ def killed(scenario, folder):
 
 
 def main():
-    seconds = float(sys.argv[1]) if len(sys.argv) > 1 else (86400.0 if DEEP else 120.0)
+    seconds = float(sys.argv[1]) if len(sys.argv) > 1 else (86400.0 if DEEP else 60.0)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         scenario = folder / "small.toml"
@@ -186,6 +214,7 @@ def main():
         commands_without_a_time(scenario)
         for_long(scenario, seconds)
         killed(scenario, folder)
+    turns()
     print("listened to: all as it should be")
 
 
