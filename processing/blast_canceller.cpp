@@ -96,7 +96,7 @@ struct Group {
   double freedom = 0.0;  // as of its fit
   std::vector<double> taps = {};
   std::size_t begin = 0;        // of the model, a sample
-  Eigen::MatrixXcf model = {};  // [samples × rows] as it is received
+  Eigen::MatrixXcf model = {};  // [samples × phones] as it is received
 };
 
 /// Between the moments, straight.
@@ -207,16 +207,12 @@ struct Fit {
 class Canceller {
  public:
   Canceller(Baseband& record, const ListeningBand& band, std::span<const KnownBlast> blasts,
-            std::span<const std::pair<double, double>> blanked, Baseband* asked,
-            std::size_t asked_phone)
+            std::span<const std::pair<double, double>> blanked)
       : record_(record),
-        asked_(asked),
-        asked_phone_(asked_phone),
         band_(band),
         blasts_(blasts),
         samples_(record.recorded),
         phones_(record.channels),
-        rows_(record.channels + (asked != nullptr ? asked->channels : 0)),
         fade_(record.start,
               record.start + static_cast<double>(record.recorded) / record.sample_rate, blanked,
               2.0 * fading / band.width),
@@ -232,28 +228,26 @@ class Canceller {
   }
 
   void run(BlastCancellation& result) {
-    const double cells = static_cast<double>(samples_) * static_cast<double>(rows_);
+    const double cells = static_cast<double>(samples_) * static_cast<double>(phones_);
     MemoryBudget budget = MemoryBudget::without_key();
     budget.take(
         {.where = "cancel_direct_blast",
          .what = std::to_string(groups_.size()) + " groups of straight ways in " +
-                 std::to_string(samples_) + " samples on " + std::to_string(rows_) + " phones",
+                 std::to_string(samples_) + " samples on " + std::to_string(phones_) + " phones",
          .bytes = cells * (6.0 * sizeof(Complex) + 8.0 * static_cast<double>(groups_.size())),
          .remedy = "cancel_direct_blast = \"off\", or fewer phones"});
-    rest_ = Matrix(static_cast<Eigen::Index>(samples_), static_cast<Eigen::Index>(rows_));
-    for (std::size_t row = 0; row < rows_; ++row) {
-      const auto values = row < phones_ ? record_.channel(row) : asked_->channel(row - phones_);
+    rest_ = Matrix(static_cast<Eigen::Index>(samples_), static_cast<Eigen::Index>(phones_));
+    for (std::size_t row = 0; row < phones_; ++row) {
+      const auto values = record_.channel(row);
       for (std::size_t i = 0; i < samples_; ++i) rest_(at(i), at(row)) = Complex(values[i]);
     }
-    const Eigen::MatrixXcf all = rest_.leftCols(at(phones_)).cast<std::complex<float>>();
+    const Eigen::MatrixXcf all = rest_.cast<std::complex<float>>();
     fit_all();
     tell(all, result);
     if (result.cancelled == 0) return;
-    for (std::size_t row = 0; row < rows_; ++row) {
-      Baseband& into = row < phones_ ? record_ : *asked_;
-      std::complex<float>* values =
-          into.values.data() + (row < phones_ ? row : row - phones_) * into.samples;
-      for (std::size_t i = 0; i < into.samples; ++i)
+    for (std::size_t row = 0; row < phones_; ++row) {
+      std::complex<float>* values = record_.values.data() + row * record_.samples;
+      for (std::size_t i = 0; i < record_.samples; ++i)
         values[i] = i < samples_ ? std::complex<float>(rest_(at(i), at(row)) * fade_.at(time(i)))
                                  : std::complex<float>(0.0F);
     }
@@ -264,7 +258,6 @@ class Canceller {
   double time(std::size_t i) const {
     return record_.start + static_cast<double>(i) / record_.sample_rate;
   }
-  std::size_t phone(std::size_t row) const { return row < phones_ ? row : asked_phone_; }
 
   /// The samples that hold a group's sound, warped or not.
   std::pair<std::size_t, std::size_t> span_of(const Group& group) const {
@@ -329,7 +322,7 @@ class Canceller {
     double energy = 0.0;
     for (std::size_t i = begin; i < end; ++i) {
       const double trust = fade_.at(time(i));
-      energy += trust * trust * rest_.row(at(i)).head(at(phones_)).squaredNorm();
+      energy += trust * trust * rest_.row(at(i)).squaredNorm();
     }
     return {energy, independent(end - begin)};
   }
@@ -345,9 +338,9 @@ class Canceller {
     std::vector<Shift> shifts;
     for (std::size_t n = 0; n < phones_; ++n) shifts.emplace_back(*group.blast, group.loudest, n);
     const std::size_t n = end - begin;
-    Matrix still(at(n), at(rows_));
+    Matrix still(at(n), at(phones_));
     Eigen::VectorXd trust = Eigen::VectorXd::Ones(at(n));
-    in_parallel(rows_, [&](std::size_t row) { warp(row, shifts[phone(row)], begin, still); });
+    in_parallel(phones_, [&](std::size_t row) { warp(row, shifts[row], begin, still); });
     for (const Shift& shift : shifts)
       for (std::size_t i = 0; i < n; ++i) {
         const double t = time(begin + i);
@@ -366,9 +359,9 @@ class Canceller {
     for (const Shift& shift : shifts) furthest = std::max(furthest, shift.furthest());
     const auto room = static_cast<std::size_t>(furthest * record_.sample_rate) + 2;
     group.begin = begin > room ? begin - room : 0;
-    group.model.setZero(at(std::min(end + room, samples_) - group.begin), at(rows_));
-    in_parallel(
-        rows_, [&](std::size_t row) { unwarp(row, shifts[phone(row)], begin, made.model, group); });
+    group.model.setZero(at(std::min(end + room, samples_) - group.begin), at(phones_));
+    in_parallel(phones_,
+                [&](std::size_t row) { unwarp(row, shifts[row], begin, made.model, group); });
     add(group, -1.0);
   }
 
@@ -499,7 +492,7 @@ class Canceller {
       if (!sounds[i]) continue;
       const double trust = fade_.at(time(i)), weight = trust * trust;
       before += weight * all.row(at(i)).cast<Complex>().squaredNorm();
-      after += weight * rest_.row(at(i)).head(at(phones_)).squaredNorm();
+      after += weight * rest_.row(at(i)).squaredNorm();
       numbers += weight * static_cast<double>(phones_);
     }
     result.cancelled = static_cast<std::size_t>(std::count(found.begin(), found.end(), true));
@@ -514,26 +507,23 @@ class Canceller {
   }
 
   Baseband& record_;
-  Baseband* asked_;
-  std::size_t asked_phone_;
   ListeningBand band_;
   std::span<const KnownBlast> blasts_;
-  std::size_t samples_, phones_, rows_;
+  std::size_t samples_, phones_;
   Fade fade_;
   std::vector<Group> groups_;
   std::vector<SampledSignal> pulses_;
   std::vector<double> shares_;  // of their energies that the band holds
-  Matrix rest_;                 // [samples × rows]
+  Matrix rest_;                 // [samples × phones]
 };
 
 }  // namespace
 
 void cancel_blasts(Baseband& record, const ListeningBand& band, std::span<const KnownBlast> blasts,
-                   std::span<const std::pair<double, double>> blanked, BlastCancellation& result,
-                   Baseband* asked, std::size_t asked_phone) {
+                   std::span<const std::pair<double, double>> blanked, BlastCancellation& result) {
   result = {};
   if (blasts.empty() || record.channels == 0) return;
-  Canceller(record, band, blasts, blanked, asked, asked_phone).run(result);
+  Canceller(record, band, blasts, blanked).run(result);
 }
 
 }  // namespace asdic::detail

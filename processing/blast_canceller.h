@@ -54,10 +54,7 @@ struct BlastCancellation {
 /// change with time, in half-overlapping parts. What lies in the fitted span goes with it, echoes
 /// too: `blind`. Source: docs/theory/continuous.md
 /// \param band     that the record was cut to   \param blanked  when it holds nothing [s]
-/// \param keep     rows after the phones that are treated as a phone of this number would be: to
-///                 ask what becomes of an echo
 void cancel_blasts(Baseband& record, const ListeningBand& band, std::span<const KnownBlast> blasts,
-                   std::span<const std::pair<double, double>> blanked, BlastCancellation& result,
-                   Baseband* asked = nullptr, std::size_t asked_phone = 0);
+                   std::span<const std::pair<double, double>> blanked, BlastCancellation& result);
 
 }  // namespace asdic::detail

@@ -8,6 +8,7 @@
 #include "core/check_settings.h"
 #include "core/error.h"
 #include "core/geometry.h"
+#include "core/text.h"
 #include "processing/known_blasts.h"
 #include "processing/listening_band.h"
 #include "raytrace/parallel/parallel.h"
@@ -98,9 +99,12 @@ PingProcessor::PingProcessor(Scenario scenario, std::vector<Replica> replicas,
   }
   for (const Replica& replica : replicas_) {
     const double product = replica.noise_bandwidth() * replica.duration();
-    require(settings_.detector.sub_bands == 1 || settings_.detector.sub_bands <= 0.25 * product,
-            "sub_bands", settings_.detector.sub_bands,
-            "no more than a quarter of the pulse's duration times its bandwidth");
+    if (const int parts = settings_.detector.sub_bands; parts > 1 && parts > 0.25 * product)
+      throw InputError({.where = "sub_bands",
+                        .got = std::to_string(parts),
+                        .expected = "no more than a quarter of the pulse's duration times its "
+                                    "bandwidth, " +
+                                    to_text(std::max(1.0, std::floor(0.25 * product)))});
     // The slowest sound of any ocean, so that no echo falls outside the bank.
     banks_.push_back(doppler_bank(replica, 2.0 * settings_.max_speed / 1400.0,
                                   settings_.bank_loss_db, settings_.detector.sub_bands));

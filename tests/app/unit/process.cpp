@@ -91,14 +91,14 @@ TEST_F(Process, TellsInTheFileWhatItUsed) {
       used("--beamformer mvdr --mvdr-loading-db -3 --shading hann --elevations -20:20.5 "
            "--max-speed 600 --normaliser cell-averaging --time-only --guard-cells 1.5 "
            "--reference-cells 20 --false-alarm-probability 1e-4 --from 0 --until 3 "
-           "--cancel-direct-blast off --sub-bands 2 "
+           "--cancel-direct-blast off "
            "--target-depth 0.5km --range-speed 1490 --track-start 2/3 --track-stop 5 "
            "--track-acceleration 0.1 --track-max-speed 8"),
       testing::ElementsAre(
           "beamformer=mvdr", "mvdr_loading_db=-3", "shading=hann", "elevations=-20:20.5",
           "max_speed=600", "normaliser=cell-averaging", "across_beams=false", "guard_cells=1.5",
           "reference_cells=20", "false_alarm_probability=0.0001", "cancel_direct_blast=off",
-          "sub_bands=2", "from=0", "until=3", "target_depth=500", "range_speed=1490",
+          "sub_bands=1", "from=0", "until=3", "target_depth=500", "range_speed=1490",
           "track_start=2/3", "track_stop=5", "track_acceleration=0.1", "track_max_speed=8"));
 }
 
