@@ -184,13 +184,14 @@ std::string listening_ended_line(double time) {
 
 std::string update_line(const std::string& id, const Scenario& scenario, double now, double seconds,
                         const std::optional<double>& behind,
-                        const std::vector<std::string>& warnings) {
+                        const std::vector<std::string>& warnings, bool sea_drawn_anew) {
   OrderedJson line = answer(id, true);
   line["time"] = now;
   add_warnings(scenario, line);
   for (const std::string& warning : warnings) line["warnings"].push_back(warning);
   line["latency"] = seconds;
   if (behind) line["behind"] = *behind;
+  if (sea_drawn_anew) line["sea_drawn_anew"] = true;
   return text(line);
 }
 

@@ -46,7 +46,8 @@ struct ServedPing {
 /// told
 [[nodiscard]] std::string update_line(const std::string& id, const Scenario& scenario, double now,
                                       double seconds, const std::optional<double>& behind,
-                                      const std::vector<std::string>& warnings);
+                                      const std::vector<std::string>& warnings,
+                                      bool sea_drawn_anew = false);
 /// \param now  time of the scenario [s]   \param next  number of the next ping
 [[nodiscard]] std::string state_line(const std::string& id, const Scenario& scenario, double now,
                                      int next, const LatencyLog& latency);

@@ -78,6 +78,9 @@ class Listening {
   /// InputError
   void prepare(SessionState& session, double until);
   [[nodiscard]] bool lacks(double until) const;  ///< whether that has something to do
+  [[nodiscard]] bool sounds() const {
+    return !sounding().empty();
+  }  ///< whether any ping still does
   /// Before that nothing that still sounds was sent or struck [s].
   [[nodiscard]] double oldest() const;
 

@@ -61,8 +61,11 @@ Answer update_stream(SessionState& session, const Command& command) {
     throw;
   }
   session.live.forget_before(listening.oldest() - tow_memory(before.state().scenario));
+  // Streams of reverberation are known by their Doppler factors, which another course changes.
+  const bool drawn_anew = command.fields.find("platform") != nullptr &&
+                          before.state().scenario.reverberation.enabled && listening.sounds();
   return {.line = update_line(command.id, session.live.state().scenario, time,
-                              session.clock() - command.received, {}, {})};
+                              session.clock() - command.received, {}, {}, drawn_anew)};
 }
 
 /// What a time in the past does not do.

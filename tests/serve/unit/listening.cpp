@@ -230,6 +230,18 @@ TEST(Listening, APlatformKeepsWhereItWas) {
   EXPECT_NEAR(track.at(2.0).position.y(), 0.0, 1e-9);
 }
 
+// Another course gives the sea other Doppler factors: that is said, while a ping sounds.
+TEST(Listening, TellsThatTheSeaIsDrawnAnew) {
+  Heard heard;
+  heard.listen(0.1);
+  const std::string turn = R"({"command": "update", "platform": {"velocity": [0, 2, 0]}})";
+  EXPECT_FALSE(heard(turn).contains("sea_drawn_anew"));
+  heard(R"({"command": "ping"})");
+  heard.listen(0.5);
+  EXPECT_EQ(heard(turn)["sea_drawn_anew"], true);
+  EXPECT_FALSE(heard(R"({"command": "update", "wind_speed": 3})").contains("sea_drawn_anew"));
+}
+
 TEST(Listening, RefusesWhatIsPast) {
   Heard heard;
   heard.listen(3.0);
