@@ -38,10 +38,10 @@ Answer send_into_stream(SessionState& session, const Command& command, const Pin
   ServedPing served{.id = command.id};
   const double heard = listening.time();
   const bool by_the_clock = settings.pace.by_the_clock();
-  if (!request.time) {
-    if (by_the_clock) sent.time = session.acts.value_or(session.at(command.received));
-    sent.time = std::max(sent.time, heard);
-  }
+  // Whoever listens pings now, whatever the schedule has.
+  if (!request.time)
+    sent.time =
+        std::max(heard, session.acts.value_or(by_the_clock ? session.at(command.received) : heard));
   sent.time = listening.whole_samples(sent.time);
   if (sent.time < heard) {
     if (request.time && *request.time < heard)

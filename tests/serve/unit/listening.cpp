@@ -127,6 +127,15 @@ TEST(Listening, PingsByCommandAreHeardAsThoseOfTheSchedule) {
   for (std::size_t c = 0; c < channels; ++c) EXPECT_EQ(heard.rows[c], record[c]);
 }
 
+// The schedule has its next ping at 10 s: who listens pings when they say so.
+TEST(Listening, PingsWithoutATimeLeaveNow) {
+  Heard heard;
+  heard.listen(1.0);
+  EXPECT_EQ(heard(R"({"command": "ping"})")["time"], 1.0);
+  heard.listen(2.0);
+  EXPECT_EQ(heard(R"({"command": "ping"})")["time"], 3.0);
+}
+
 // The rock is 3000 m away: what leaves at 0 strikes it at 2 s, and comes back at 4 s. A change acts
 // from its sample on: that of what receives at once, that of what is struck on what was struck by
 // then (here to the sample after 2·t), that of the ocean with the next ping.
