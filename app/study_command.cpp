@@ -8,6 +8,7 @@
 
 #include "app/console.h"
 #include "app/interrupt.h"
+#include "app/study_comparison.h"
 #include "app/study_options.h"
 #include "app/study_progress.h"
 #include "app/warn.h"
@@ -55,6 +56,11 @@ void add_study_command(Program& program) {
       "study", "Simulate the realisations of a Monte Carlo study, into one HDF5 file.",
       [](const Command& command) {
         auto options = std::make_shared<StudyOptions>();
+        command.add_option("STUDY", options->paths, "study file (TOML); several with --compare")
+            .required();
+        command.add_flag("--compare", options->compare,
+                         "make several studies of the same realisations and say which is better, "
+                         "where and how sure; -o is the comparison's file");
         add_study_options(command, *options);
         const Option range =
             command
@@ -76,7 +82,9 @@ void add_study_command(Program& program) {
             "Whatever stops it (Ctrl-C, a kill, a power cut), the same command goes on where it "
             "was.\n"
             "Example:  asdic study scenarios/studies/detection_range.toml -o detection_range.h5");
-        command.runs([options] { return study_run(*options); });
+        command.runs([options] {
+          return options->compare ? compare_studies(*options, study_run) : study_run(*options);
+        });
       });
 }
 
