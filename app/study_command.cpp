@@ -15,13 +15,26 @@
 #include "core/error.h"
 #include "raytrace/parallel/stop.h"
 #include "raytrace/propagation.h"
+#include "study/crew/crew_run.h"
 
 namespace asdic::detail::app {
 namespace {
 
+void check_join(const StudyOptions& options) {
+  if (options.silence && !options.join)
+    throw InputError({.where = "--silence", .got = "no --join", .expected = "both or none"});
+  if (options.join && (options.until || options.fresh || options.assemble || options.retry ||
+                       options.compare || !options.range.empty() || !options.shard.empty()))
+    throw InputError({.where = "--join",
+                      .got = "--until, --fresh, --retry, --assemble, --compare, --realisations or "
+                             "--shard beside it",
+                      .expected = "none of them: the same whole study in all processes"});
+}
+
 int study_run(const StudyOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   StudyOrder order = order_of(options);
+  check_join(options);
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   static_cast<std::size_t>(order.threads));
   const StopOnInterrupt interrupt(
@@ -43,7 +56,8 @@ int study_run(const StudyOptions& options) {
   }();
   if (!options.quiet) warn(work.fingerprint.warnings);
   order.run.progress = [&](const study::Progress& p) { progress->update(p); };
-  const study::StudyOutcome outcome = study::run_study(work, order.run);
+  const study::StudyOutcome outcome =
+      options.join ? study::run_crew(work, order.run) : study::run_study(work, order.run);
   progress.reset();
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   return report(order, outcome, options.quiet, wall.count());
@@ -76,6 +90,16 @@ void add_study_command(Program& program) {
                 "Slurm job array")
             .type_name("I/N|slurm")
             .excludes(range);
+        command.add_flag("--join", options->join,
+                         "make the study together with all processes that run the same command, on "
+                         "machines that share its folder; they come and go, and one that is lost "
+                         "costs the rows that it had in hand");
+        command
+            .add_option("--silence", options->silence,
+                        "with --join: after so long without a sign of life a process is taken for "
+                        "gone; default: 120 s")
+            .type_name("SECONDS")
+            .check(above_zero());
         command.add_flag("--assemble", options->assemble,
                          "make no realisations: write a file of those that are there");
         command.footer(

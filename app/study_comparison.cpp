@@ -65,19 +65,20 @@ std::string answers(const study::Summary& summary, const std::vector<std::string
   return text.text();
 }
 
-/// "pd by range: towed in 7 of 10 bins, hull in 1, not decided in 2"
+/// "pd by range, of 10 bins: towed in 7, hull in 1, not decided in 2"
 std::string winners(const study::SummaryTable& table, const std::vector<std::string>& names) {
   const auto best = values_of(table, "best");
   std::string text;
-  for (std::size_t k = 0; k < names.size(); ++k) {
-    const auto wins = std::count(best.begin(), best.end(), static_cast<double>(k));
-    if (wins > 0) text += fmt::format("{} in {}, ", names[k], wins);
-  }
-  const auto open = std::count_if(best.begin(), best.end(), [](double x) { return std::isnan(x); });
+  const auto add = [&](const std::string& who, std::ptrdiff_t bins) {
+    if (bins > 0) text += fmt::format("{}{} in {}", text.empty() ? "" : ", ", who, bins);
+  };
+  for (std::size_t k = 0; k < names.size(); ++k)
+    add(names[k], std::count(best.begin(), best.end(), static_cast<double>(k)));
+  add("not decided",
+      std::count_if(best.begin(), best.end(), [](double x) { return std::isnan(x); }));
   std::string what = table.name;
-  for (std::size_t i = what.find('_'); i != std::string::npos; i = what.find('_', i)) what[i] = ' ';
-  return fmt::format("{}: {}not decided in {} of {}\n", what, text, open,
-                     count_of(best.size(), "bin"));
+  std::replace(what.begin(), what.end(), '_', ' ');
+  return fmt::format("{}, best of {}: {}\n", what, count_of(best.size(), "bin"), text);
 }
 
 /// The studies' own files have the names that they would have by themselves.

@@ -91,6 +91,7 @@ StudyOrder order_of(const StudyOptions& options) {
   order.run.fresh = options.fresh;
   order.run.force = options.force;
   order.run.retry = options.retry;
+  if (options.silence) order.run.silence = std::chrono::duration<double>(*options.silence);
   order.run.note = [](const std::string& text) { tell("asdic: note: " + text); };
   order.run.assemble_only = options.assemble;
   order.run.session.made = provenance(order.threads);
@@ -142,6 +143,11 @@ int report(const StudyOrder& order, const study::StudyOutcome& outcome, bool qui
             : fmt::format("interrupted after {} of {}; {}, and the same command goes on", there,
                           count_of(outcome.total, "realisation"), journals_hold(order.run.output)));
   if (quiet) return 0;
+  if (outcome.by_another) {
+    print(fmt::format("{} made here\n{}: made by another process of those that joined\n",
+                      count_of(outcome.made, "realisation"), file));
+    return 0;
+  }
   if (outcome.was_complete) {
     print(fmt::format("{}: complete already, nothing to do; --fresh begins anew\n", file));
     return 0;

@@ -18,7 +18,8 @@ struct StudyOptions {
   std::optional<int> threads;
   std::optional<double> until;
   bool fresh = false, force = false, assemble = false, retry = false, quiet = false,
-       compare = false;
+       compare = false, join = false;
+  std::optional<double> silence;  ///< of workers and ranks [s]
 };
 
 /// -o, --set, --until, --fresh, --force, --threads, --quiet.

@@ -51,6 +51,11 @@ def read(path) -> Comparison:
                          "a whole file of `asdic study --compare`") from error
 
 
+def begun(words: str) -> str:
+    """With a capital letter."""
+    return words[:1].upper() + words[1:]
+
+
 def word_of(table: SummaryTable) -> str:
     """What its answers are called: "pd", "echo_level_db"."""
     return table.name.split("_by_")[0]
@@ -78,7 +83,7 @@ def draw_line(comparison: Comparison, table: SummaryTable):
     x = table[axes_of(table)[0]]
     unit = table[f"{word}_{comparison.names[0]}"].unit
     of_unit = f" / {unit}" if unit and unit != "1" else ""
-    fig, axes = style.figure(f"{spoken(word)} against {spoken(x.name)}".capitalize(), 6.4, nrows=2, sharex=True)
+    fig, axes = style.figure(begun(f"{spoken(word)} against {spoken(x.name)}"), 6.4, nrows=2, sharex=True)
     count = len(comparison.names)
     for k, name in enumerate(comparison.names):
         band(axes[0], table, f"{word}_{name}", style.colour(k), spoken(name), 0.12 * (k - 0.5 * (count - 1)))
@@ -106,7 +111,7 @@ def draw_map(comparison: Comparison, table: SummaryTable):
     pairs = comparison.pairs()
     word = word_of(table)
     along = " and ".join(spoken(n) for n in axes_of(table))
-    fig, axes = panels(comparison, f"{spoken(word)} against {along}: differences".capitalize(), len(pairs), 3.4)
+    fig, axes = panels(comparison, begun(f"{spoken(word)} against {along}: differences"), len(pairs), 3.4)
     heading(axes[0], comparison, "a dot: not decided")
     largest = max((float(np.nanmax(np.abs(table[n].values), initial=0.0)) for n, _ in pairs), default=1.0) or 1.0
     for (name, words), a in zip(pairs, axes):
@@ -131,8 +136,9 @@ def draw_all_measures(comparison: Comparison, table: SummaryTable):
     """Every measure's differences over all realisations, a panel each: their units differ."""
     measures = table["measure"]
     pairs = comparison.pairs()
+    answers = np.array([table[f"value_{n}"].values for n in comparison.names])
     shown = [k for k in range(measures.values.size)
-             if np.isfinite([table[n].values[k] for n, _ in pairs]).any()][:12]
+             if np.isfinite([table[n].values[k] for n, _ in pairs]).any() and answers[:, k].any()][:12]
     if not shown:
         return None
     fig, axes = panels(comparison, "Differences over all realisations", len(shown), 1.4 + 0.3 * len(pairs))
@@ -144,10 +150,17 @@ def draw_all_measures(comparison: Comparison, table: SummaryTable):
         a.axvline(0.0, color=style.GREY, lw=0.8, ls="--")
         a.set_yticks(range(len(pairs)), [style.shorten(words, 34) for _, words in pairs])
         a.set_ylim(len(pairs) - 0.4, -0.6)
-        a.set_xlabel(spoken(measures.labels[int(measures.values[k])]))
+        name = measures.labels[int(measures.values[k])]
+        a.set_xlabel(spoken(name) + (" / dB" if "_db" in name else " / degrees" if "_deg" in name else ""))
         a.grid(True, axis="x")
     heading(axes[0], comparison)
     return fig
+
+
+def is_nothing(comparison: Comparison, table: SummaryTable) -> bool:
+    """Whether every study's answer is 0 everywhere, or not known."""
+    return table.name != "differences" and not any(
+        np.nan_to_num(table[f"{word_of(table)}_{n}"].values).any() for n in comparison.names)
 
 
 def names_of(comparison: Comparison) -> list:
@@ -157,7 +170,7 @@ def names_of(comparison: Comparison) -> list:
 def draw(comparison: Comparison, only=None):
     """→ (name, figure) of every picture, one at a time. \\param only  names, if not all"""
     for table in comparison.summary:
-        if only is not None and table.name not in only:
+        if (only is not None and table.name not in only) or is_nothing(comparison, table):
             continue
         with style.look():
             if table.name == "differences":
