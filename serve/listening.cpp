@@ -76,6 +76,15 @@ std::int64_t Listening::position() const {
 
 double Listening::time() const { return static_cast<double>(position()) / rate_; }
 
+Listening::Heard Listening::heard() const {
+  const std::lock_guard lock(mutex_);
+  Heard heard{.position = stream_.position(), .time = stream_.time_of(stream_.position())};
+  heard.oldest = heard.time;
+  for (const LiveStream::Sounding& one : stream_.sounding())
+    heard.oldest = std::min(heard.oldest, one.sent.time);
+  return heard;
+}
+
 double Listening::whole_samples(double time) const { return std::round(time * rate_) / rate_; }
 
 void Listening::begin(const Blocks& blocks, double from) {
@@ -87,10 +96,11 @@ void Listening::begin(const Blocks& blocks, double from) {
   active_ = true;
 }
 
-void Listening::end() {
+std::int64_t Listening::end() {
   const std::lock_guard lock(mutex_);
   active_ = false;
   blocks_.sink.reset();
+  return stream_.position();
 }
 
 std::optional<Listening::Blocks> Listening::blocks() const {
@@ -99,11 +109,19 @@ std::optional<Listening::Blocks> Listening::blocks() const {
   return blocks_;
 }
 
+std::int64_t Listening::end_of_next() const {
+  const std::int64_t end = stream_.position() + blocks_.samples;
+  return blocks_.end ? std::min(end, *blocks_.end) : end;
+}
+
 double Listening::next_end() const {
   const std::lock_guard lock(mutex_);
-  std::int64_t end = stream_.position() + blocks_.samples;
-  if (blocks_.end) end = std::min(end, *blocks_.end);
-  return stream_.time_of(end);
+  return stream_.time_of(end_of_next());
+}
+
+bool Listening::is_over() const {
+  const std::lock_guard lock(mutex_);
+  return !active_ || end_of_next() <= stream_.position();
 }
 
 void Listening::scheduled_until(double time) {
@@ -117,11 +135,11 @@ bool Listening::is_prepared() const {
   return stream_.time_of(sounded_until_) >= end && (!blocks_.scheduled || scheduled_until_ >= end);
 }
 
-std::optional<Listening::Block> Listening::next() {
+std::optional<Listening::Block> Listening::next(const std::function<bool(double end)>& may) {
   const std::lock_guard lock(mutex_);
   if (!active_) return std::nullopt;
-  std::int64_t samples = blocks_.samples;
-  if (blocks_.end) samples = std::min(samples, *blocks_.end - stream_.position());
+  const std::int64_t samples = end_of_next() - stream_.position();
+  if (!may(stream_.time_of(end_of_next()))) return std::nullopt;
   if (samples <= 0) {
     active_ = false;
     blocks_.sink.reset();
@@ -296,12 +314,6 @@ std::vector<LiveStream::Sounding> Listening::sounding() const {
   return stream_.sounding();
 }
 
-double Listening::oldest() const {
-  double time = this->time();
-  for (const LiveStream::Sounding& one : sounding()) time = std::min(time, one.sent.time);
-  return time;
-}
-
 /// What no sound asks for any more.
 void Listening::forget() {
   const std::vector<LiveStream::Sounding> still = sounding();
@@ -309,7 +321,7 @@ void Listening::forget() {
     return std::none_of(still.begin(), still.end(),
                         [&](const auto& other) { return other.ping == one.ping; });
   });
-  const double before = oldest();
+  const double before = heard().oldest;
   while (changes_.size() > 1 && changes_[1].time <= before) changes_.erase(changes_.begin());
 }
 
