@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include "serve/places.h"
 #include "serve/session_state.h"
@@ -259,23 +260,32 @@ bool Listening::lacks(double until) const {
   return stream_.time_of(sounded_until_) < until;
 }
 
+PingRecord Listening::sound_in(SessionState& session, const Sent& ping,
+                               const Window& window) const {
+  const auto simulator = session.simulator_of(session.live.of(window.changes));
+  const std::int64_t first = stream_.nearest_sample(ping.sent.time);
+  return simulator->sound(ping.ping, ping.sent, {},
+                          {.from = static_cast<double>(window.from - first) / rate_,
+                           .to = static_cast<double>(window.to - first) / rate_});
+}
+
 void Listening::prepare(SessionState& session, double until) {
   for (Sent& ping : sent_)
     while (!ping.pending.empty() && stream_.time_of(ping.pending.front().from) < until) {
-      const Window& window = ping.pending.front();
-      const auto simulator = session.simulator_of(session.live.of(window.changes));
-      const std::int64_t first = stream_.nearest_sample(ping.sent.time);
-      const PingRecord sound =
-          simulator->sound(ping.ping, ping.sent, {},
-                           {.from = static_cast<double>(window.from - first) / rate_,
-                            .to = static_cast<double>(window.to - first) / rate_});
-      {
-        const std::lock_guard lock(mutex_);
-        stream_.replace(ping.ping, sound, std::max(window.from, stream_.position()), window.to);
-      }
-      ping.pending.erase(ping.pending.begin());
+      const PingRecord sound = sound_in(session, ping, ping.pending.front());
+      follow(ping, sound);
     }
   see_to_pending();
+}
+
+/// From now on a ping sounds as its first pending window has it.
+void Listening::follow(Sent& ping, const PingRecord& sound) {
+  const Window& window = ping.pending.front();
+  {
+    const std::lock_guard lock(mutex_);
+    stream_.replace(ping.ping, sound, std::max(window.from, stream_.position()), window.to);
+  }
+  ping.pending.erase(ping.pending.begin());
 }
 
 void Listening::change(SessionState& session, double time, bool strikes) {
@@ -292,13 +302,20 @@ void Listening::change(SessionState& session, double time, bool strikes) {
                                      [&](const Sent& sent) { return sent.ping == one.ping; });
       check_places(session.live.of(composed_for(*ping, time)).scenario, one.ping,
                    one.sent.transmitter, one.sent.time);
+      // One that begins before stays as long as it is: so its bits are those that it has where
+      // nobody knew of this change. What follows takes its place from here on.
       std::erase_if(ping->pending, [&](const Window& window) { return window.from >= from; });
-      if (!ping->pending.empty()) ping->pending.back().to = std::min(ping->pending.back().to, from);
       for (Window& step :
            steps(windows(*ping, std::max(from, one.first), one.end), std::max(from, one.first)))
         ping->pending.push_back(std::move(step));
     }
-    prepare(session, std::nextafter(time, time + 1.0));  // what is heard next, or it is refused
+    // What is heard next, or it is refused; if it is called off, nothing has changed.
+    std::vector<std::pair<Sent*, PingRecord>> made;
+    for (Sent& ping : sent_)
+      for (const Window& window : ping.pending)
+        if (window.from <= from) made.emplace_back(&ping, sound_in(session, ping, window));
+    for (const auto& [ping, sound] : made) follow(*ping, sound);
+    see_to_pending();
   } catch (...) {
     changes_.pop_back();
     sent_ = before;

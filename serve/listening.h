@@ -114,6 +114,9 @@ class Listening {
     LiveScenario::Changes own;         // sections that are its own
     std::vector<Window> pending = {};  // that it does not sound by so far
   };
+  [[nodiscard]] PingRecord sound_in(SessionState& session, const Sent& ping,
+                                    const Window& window) const;
+  void follow(Sent& ping, const PingRecord& sound);
   [[nodiscard]] LiveScenario::Changes composed_for(const Sent& ping, double time) const;
   [[nodiscard]] std::int64_t end_of_next() const;  // under mutex_
   void see_to_pending();
