@@ -6,7 +6,6 @@ other without a gap; memory stays what it is after the first pings.
 
     ASDIC=build/ci/bin/asdic listening.py [SECONDS]      of the long run; default 60, ASDIC_DEEP=1: 86400
 """
-import os
 import sys
 import tempfile
 import time
@@ -15,50 +14,16 @@ from pathlib import Path
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[3]
-sys.path.insert(0, str(ROOT / "python"))
+sys.path[:0] = [str(ROOT / "python"), str(ROOT / "tests/support")]
 from asdic_client import Client, Refused  # noqa: E402
+from checks import check  # noqa: E402
+from deep import DEEP  # noqa: E402
+from served import ASDIC, resident, sea  # noqa: E402
 
-ASDIC = str(Path(os.environ["ASDIC"]).resolve())
-DEEP = os.environ.get("ASDIC_DEEP") == "1"
-SMALL = """title = "two pings overlap"
-seed = 5
-[environment]
-wind_speed = 8.0
-sound_speed = { kind = "isovelocity", speed = 1500.0 }
-[environment.bottom]
-depth = 1000.0
-kind = "rigid"
-[platform]
-position = [0.0, 0.0, 200.0]
-[transmitter]
-source_level_db = 200.0
-beamwidth_deg = 20.0
-[pulse]
-kind = "cw"
-frequency = 1000.0
-duration = 0.1
-window = "hann"
-[array]
-kind = "horizontal"
-phones = 4
-spacing = 0.75
-[[target]]
-name = "rock"
-position = [3000.0, 0.0, 500.0]
-strength_db = 10.0
-[noise]
-spectral_level_db = 40.0
-[pings]
-interval = 2.0
+SMALL = sea('title = "two pings overlap"\nseed = 5', pings="""interval = 2.0
 recording_duration = 5.0
 samples = "baseband"
-baseband_rate = 200.0
-"""
-
-
-def check(passed, what):
-    if not passed:
-        sys.exit(f"not so: {what}")
+baseband_rate = 200.0""")
 
 
 def joined(blocks):
@@ -80,7 +45,7 @@ def commands(client, begin):
 
 def by_the_clock(scenario):
     with Client.start(scenario, "--pace", "4", program=ASDIC) as client:
-        begin = np.ceil(4.0 * client.listen(block=0.125, seconds=20.0)["time"]) / 4.0 + 12.0  # whatever the machine does
+        begin = np.ceil(4.0 * client.listen(block=0.125, seconds=20.0)["time"]) / 4.0 + 12.0
         commands(client, begin)
         blocks = list(client.blocks())
         sound = joined(blocks)
@@ -124,11 +89,6 @@ def commands_without_a_time(scenario):
     print(f"now: a ping at {sent:.3f} s")
 
 
-def resident(client):
-    with open(f"/proc/{client.process.pid}/status") as status:
-        return int(next(line for line in status if line.startswith("VmRSS")).split()[1])
-
-
 def for_long(scenario, seconds):
     """A continuous sonar under way that turns every ten seconds."""
     with Client.start(scenario, program=ASDIC) as client:
@@ -140,8 +100,8 @@ def for_long(scenario, seconds):
             heard += 10.0
             client.update(platform={"heading_deg": heard % 360.0, "speed": 2.0}, array={"heading_deg": heard % 180.0})
             if after is None and heard >= min(60.0, seconds / 2.0):
-                after = resident(client)
-        grown = resident(client) - after
+                after = resident(client.process)
+        grown = resident(client.process) - after
         check(grown < 8192 + 0.1 * after, f"{grown} kB more after {heard} s")
         check(len(client.scheduled) >= min(1000, int(seconds / 2.0)), "pings of the schedule are told")
         print(f"{heard:.0f} s, {heard / (time.monotonic() - begun):.0f} times as fast as the clock: {after} kB after a "

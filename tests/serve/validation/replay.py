@@ -17,50 +17,18 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[3]
-sys.path.insert(0, str(ROOT / "python"))
+sys.path[:0] = [str(ROOT / "python"), str(ROOT / "tests/support")]
 from asdic_client import Block, Client  # noqa: E402
+from checks import check  # noqa: E402
+from served import ASDIC, sea  # noqa: E402
 
-ASDIC = str(Path(os.environ["ASDIC"]).resolve())
-SEA = """title = "a log of what was heard"
-seed = 5
-[environment]
-wind_speed = 8.0
-sound_speed = { kind = "isovelocity", speed = 1500.0 }
-[environment.bottom]
-depth = 1000.0
-kind = "rigid"
-[platform]
-position = [0.0, 0.0, 200.0]
-velocity = [0.0, 2.0, 0.0]
-[transmitter]
-source_level_db = 200.0
-beamwidth_deg = 20.0
-[pulse]
-kind = "cw"
-frequency = 1000.0
-duration = 0.1
-window = "hann"
-[array]
-kind = "horizontal"
-phones = 4
-spacing = 0.75
-[[target]]
-name = "rock"
+SEA = sea(platform="""position = [0.0, 0.0, 200.0]
+velocity = [0.0, 2.0, 0.0]""", target="""name = "rock"
 position = [1500.0, 0.0, 300.0]
-strength_db = 30.0
-[noise]
-spectral_level_db = 40.0
-[pings]
-interval = 2.0
+strength_db = 30.0""", pings="""interval = 2.0
 recording_duration = 5.0
 samples = "baseband"
-baseband_rate = 200.0
-"""
-
-
-def check(passed, what):
-    if not passed:
-        sys.exit(f"not so: {what}")
+baseband_rate = 200.0""")
 
 
 class Heard:
@@ -83,6 +51,8 @@ class Heard:
     def until_answered(self, client, *ids):
         """The blocks that come before commands are answered; to the end of the connection without any."""
         missing, answers = set(ids), {}
+        while client._heard:  # that came while another answer was waited for
+            self.add(client._heard.popleft())
         while missing or not ids:
             try:
                 line, samples = client.receive()
@@ -131,7 +101,9 @@ def replayed(log, *more):
 
 
 def same(live, again, what):
-    check(live.blocks == again.blocks, f"{what}: {len(live.blocks)} blocks, {len(again.blocks)} of the replay")
+    check(len(live.blocks) == len(again.blocks), f"{what}: {len(live.blocks)} blocks, {len(again.blocks)} replayed")
+    for one, other in zip(live.blocks, again.blocks):
+        check(one == other, f"{what}: a block is {one}, replayed {other}")
     check(live.digest() == again.digest(), f"{what}: a replay has other bits")
 
 
@@ -150,7 +122,7 @@ def by_the_clock():
         client.update(platform={"heading_deg": 70, "speed": 4}, array={"heading_deg": 20})
         sent.append(client.ping(elevation_deg=3).answer["time"])
         heard.take(client, sent[1] + 0.5)
-        client.update(targets={"position": [1400, 200, 250], "velocity": [-8, 0, 0]})
+        client.update(targets={"position": [1499, 2, 300], "velocity": [-6, 2, 0]})
         client.update(wind_speed=14)
         soon = client.state()["time"] + 3.0
         several = [client.send("ping", time=soon + n) for n in range(3)]
@@ -160,10 +132,10 @@ def by_the_clock():
         heard.take(client)
         client.update(platform={"heading_deg": 200, "speed": 3})  # while nobody listens
         client.ping()
-        client.listen(block=0.3, seconds=9.0, schedule=True)
+        client.listen(block=0.3, seconds=12.0, schedule=True)
         heard.take(client, client.state()["time"] + 2.0)
         client.update(array={"spacing": 0.7}, targets={"name": "rock", "strength_db": 35})
-        client.ping(time=client.state()["time"] + 1.0)
+        client.ping(time=client.state()["time"] + 4.0)
         heard.take(client)
         check(len(client.scheduled) >= 3, f"pings of the schedule: {len(client.scheduled)}")
         client.listen(block=0.1)
