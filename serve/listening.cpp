@@ -146,7 +146,7 @@ std::optional<Listening::Block> Listening::next(const std::function<bool(double 
     blocks_.sink.reset();
     return std::nullopt;
   }
-  Block block{.number = number_++,
+  Block block{.number = number_,
               .time = stream_.time_of(stream_.position()),
               .channels = stream_.channels(),
               .samples = static_cast<std::size_t>(samples),
@@ -155,6 +155,7 @@ std::optional<Listening::Block> Listening::next(const std::function<bool(double 
               .place = stream_.place(),
               .sink = blocks_.sink};
   block.pressure = stream_.take(block.samples);
+  ++number_;
   return block;
 }
 
