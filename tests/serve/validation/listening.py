@@ -18,7 +18,7 @@ sys.path[:0] = [str(ROOT / "python"), str(ROOT / "tests/support")]
 from asdic_client import Client, Refused  # noqa: E402
 from checks import check  # noqa: E402
 from deep import DEEP  # noqa: E402
-from served import ASDIC, resident, sea  # noqa: E402
+from served import ASDIC, resident, sea, server  # noqa: E402
 
 SMALL = sea('title = "two pings overlap"\nseed = 5', pings="""interval = 2.0
 recording_duration = 5.0
@@ -164,6 +164,48 @@ def killed(scenario, folder):
     print(f"killed: {len(taken)} blocks were whole")
 
 
+def slow_readers(folder):
+    """What listeners do not take is bounded, of each and of all; whoever reads is served, and who reads again has
+    missed nothing. By the clock it is told how late it comes.
+    """
+    scenario, socket = folder / "many.toml", folder / "many.sock"
+    scenario.write_text(sea(array='kind = "horizontal"\nphones = 64\nspacing = 0.75', target="",
+                            pings='samples = "baseband"\nbaseband_rate = 1000.0\nrecording_duration = 1.0',
+                            more="[reverberation]\nenabled = false"))
+    limits = ("--limit", "answer_bytes=4000000", "--limit", "total_answer_bytes=8000000")
+    with server("--socket", str(socket), *limits, scenario=scenario) as (process, _):
+        deaf = [Client.unix(socket) for _ in range(4)]
+        for client in deaf:
+            client.listen(block=0.1, seconds=0.1)
+            list(client.blocks())
+        before = resident(process)
+        for client in deaf:
+            client.listen(block=0.1, seconds=300.0)  # 150 MB each
+        with Client.unix(socket) as other:
+            other.listen(block=0.1, seconds=10.1)
+            truth = np.concatenate([block.samples for block in other.blocks()], axis=1)
+        time.sleep(0.5)
+        grown = resident(process) - before
+        check(grown < 8000 + 40000, f"{grown} kB more for 8 MB of answers; 600 MB are asked for")
+        heard = [block for _, block in zip(range(200), deaf[0].blocks())]  # 10 MB: more than waited
+        check(np.array_equal(truth[:, 100:], np.concatenate([b.samples for b in heard[:100]], axis=1)), "the same bits")
+        check([b.number for b in heard] == list(range(1, 201)), "no block is missing")
+        for client in deaf:
+            client.close()
+    with Client.start(scenario, "--pace", "20", *limits, program=ASDIC) as client:
+        client.listen(block=0.1)
+        time.sleep(1.5)  # 15 MB
+        heard = []
+        for block in client.blocks():
+            heard.append(block)
+            if len(heard) == 400:
+                break
+    check([b.number for b in heard] == list(range(400)), "no block is missing")
+    late = max(b.behind for b in heard)
+    check(late > 0.5, f"{late} s late at most, though nobody read for 1.5 s")
+    print(f"slow readers: {grown} kB more with four that do not read; by the clock {late:.1f} s late, and told")
+
+
 def main():
     seconds = float(sys.argv[1]) if len(sys.argv) > 1 else (86400.0 if DEEP else 60.0)
     with tempfile.TemporaryDirectory() as name:
@@ -174,6 +216,7 @@ def main():
         commands_without_a_time(scenario)
         for_long(scenario, seconds)
         killed(scenario, folder)
+        slow_readers(folder)
     turns()
     print("listened to: all as it should be")
 

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""A log of sessions that listen, carried out again.
+"""What a session that listens leaves, its log and its scenario, gives what it heard again.
 
 Truth: what the clients had. A replay at once has the same blocks, bit for bit, whatever the clock did while the session
-was live: pings, turns, targets and winds that change, commands that are called off.
+was live: pings, turns, targets and winds that change, commands that are called off. A server of a saved scenario has
+the sound of the session that saved it.
 
     ASDIC=build/ci/bin/asdic replay.py
 """
@@ -208,6 +209,69 @@ def refused():
     check(b"found scheduled: 9, expected 1, the next ping here" in run("wrong.jsonl").stderr, "another ping")
 
 
+def saved():
+    """`asdic serve` of what was saved: the same pings, and the same sound."""
+    changes = {"wind_speed": 12, "targets": {"strength_db": 40}, "platform": {"heading_deg": 30, "speed": 3}}
+    os.mkdir("saves")
+    with Client.start("sea.toml", "--output-dir", "saves", program=ASDIC) as client:
+        client.ping()
+        client.update(**changes)
+        client.ping()
+        file = client.save()
+        check((file["ping"], file["time"]) == (3, 4.0), file)
+        mine = [client.ping(deliver="samples") for _ in range(3)]
+    with Client.start(file["file"], program=ASDIC) as client:
+        for _ in range(2):
+            client.ping()
+        for one in mine:
+            again = client.ping(deliver="samples")
+            check(all(again.answer[key] == one.answer[key] for key in ("ping", "time", "targets")), again.answer)
+            check(again.samples.tobytes() == one.samples.tobytes(), "a ping of what was saved has other bits")
+
+    def listened(client, seconds):
+        client.listen(block=0.5, seconds=seconds, schedule=True)
+        return list(client.blocks())
+
+    # By 7 s pings have left up to that of 6 s. What was struck before the changes sounds as that: up to 10 s. What
+    # left before them, and sounds on, was made again from there: up to 8 s it has the roundings of other sums.
+    with Client.start("sea.toml", "--output-dir", "saves", program=ASDIC) as client:
+        listened(client, 3.0)
+        client.update(platform=changes["platform"])
+        listened(client, 4.0)
+        file = client.save()
+        check((file["ping"], file["time"]) == (5, 8.0), file)
+        mine = listened(client, 8.0)
+    with Client.start(file["file"], program=ASDIC) as client:
+        listened(client, 7.0)
+        again = listened(client, 8.0)
+        check(client.scheduled[-1]["ping"] == 8, "eight pings in 15 s")
+    for one, other in zip(mine, again):
+        check(one.time == other.time, "the same times")
+        if one.time < 8.0:
+            apart = abs(one.samples - other.samples).max() / abs(one.samples).max()
+            check(apart < 1e-4, f"{apart} at {one.time} s")
+        else:
+            check(one.samples.tobytes() == other.samples.tobytes(), f"other bits at {one.time} s")
+
+    # A ping without a time leaves when it is heard, not when a schedule that nobody follows has it.
+    with Client.start("sea.toml", "--output-dir", "saves", program=ASDIC) as client:
+        client.listen(block=1.0, seconds=1.0)
+        client.ping(time=1.0)
+        list(client.blocks())
+        client.listen(block=1.0, seconds=4.0)
+        list(client.blocks())
+        file = client.save()
+        check((file["ping"], file["time"]) == (2, 5.0), file)
+        mine = client.ping().answer
+    with Client.start(file["file"], program=ASDIC) as client:
+        client.ping()
+        again = client.ping().answer
+    for one, other in zip(mine["targets"], again["targets"]):
+        check((mine["ping"], mine["time"]) == (again["ping"], again["time"]) == (2, 5.0) and
+              all(one[key] == other[key] for key in ("echo_time", "echo_level_db")), f"{mine}, {again}")
+    print("saved: the same pings, and the same sound")
+
+
 def main():
     with tempfile.TemporaryDirectory(prefix="asdic_replay_") as folder:
         os.chdir(folder)
@@ -216,6 +280,7 @@ def main():
         at_once()
         killed()
         refused()
+        saved()
         os.chdir("/")
     print("replayed: all as it was heard")
 
