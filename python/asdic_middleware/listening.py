@@ -24,11 +24,11 @@ class Listening:
         self._format, self._origin = None, 0.0
         self._twin, self._heard_of, self._pending, self._told = None, None, [], []
         self._keep_heard = 30.0 * settings.factor  # [s]: while the twin works
-        self.on = False
+        self.on, self._waits = False, False  # it listens; it is to listen
 
     def reset(self, origin):
         """A new session. origin: the middleware's time when the scenario's began [s]"""
-        self._origin, self.on, self._told = origin, False, []
+        self._origin, self.on, self._told, self._waits = origin, False, [], self.wanted()
 
     def close(self):
         twin, self._twin = self._twin, None
@@ -53,12 +53,12 @@ class Listening:
         """What the server has taken of the world."""
         if self._twin is not None:
             self._twin.update(at, change)
-        elif not self.on and self.wanted():
+        elif self._waits:
             self._told.append((at, change))
 
     def begin(self, link):
         """Begins to hear, where the server can."""
-        s = self.settings
+        s, self._waits = self.settings, False
         try:
             # its answer comes before its blocks, but is taken by another thread: both wait here
             with self._due:
@@ -67,8 +67,10 @@ class Listening:
                 self._pending.clear()
             self.on = True
         except Refused as no:
-            if no.code != "command" or s.delivery == "listen":
+            if s.delivery == "listen":
                 raise
+            if no.code != "command":  # an older server has none
+                self._error(f"warning: each ping has its record, since nothing is listened to: {no}")
             return
         if s.receiver and s.scenario:
             Path(s.folder).mkdir(parents=True, exist_ok=True)

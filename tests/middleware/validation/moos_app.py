@@ -394,6 +394,17 @@ def test_listening():
             check("ping" not in blocks[0][0], "a stream's block belongs to no ping")
 
 
+def test_not_to_be_listened():
+    """Where nothing can be listened to, since records begin later, each ping has its record, and that is told."""
+    with tempfile.TemporaryDirectory() as folder, SmallMoosDB(warp=4) as db, \
+            app(db, folder, "Scenario = sea.toml\nReceiver = no\nArguments = --set pings.recording_start=1.0"):
+        db.post("ACTIVE_SONAR_COMMAND", "")
+        db.wait("ACTIVE_SONAR_LATENCY")
+        said = db.wait("ACTIVE_SONAR_ERROR", lambda m: "each ping has its record" in m["text"])["text"]
+        check("recording.start" in said, said)
+        check(samples_of(db.of("ACTIVE_SONAR_SAMPLES")[0])[0]["ping"] == 1, "a ping's own block")
+
+
 def knows_listen(folder):
     with Client.start(Path(folder) / "sea.toml", "--pace", "4", program=ASDIC) as server:
         try:
