@@ -19,6 +19,8 @@ Answer send(SessionState& session, ServedPing served, const Transmission& sent,
   ++session.pings;
   session.latest_ping = std::max(session.latest_ping, sent.time);
   session.schedule.sent(sent, moved);
+  // The next one may be earlier than it was: what is heard waits for it.
+  listening.scheduled_until(session.schedule.next(session.live.state().scenario).time);
   session.live.forget_before(session.heard->oldest - tow_memory(state.scenario));
   served.latency = std::max(0.0, session.clock() - due);
   session.latency.add(served.latency);

@@ -135,6 +135,7 @@ def by_the_clock():
         client.ping()
         client.listen(block=0.3, seconds=12.0, schedule=True)
         heard.take(client, client.state()["time"] + 2.0)
+        client.ping()  # the schedule goes on from it
         client.update(array={"spacing": 0.7}, targets={"name": "rock", "strength_db": 35})
         client.ping(time=client.state()["time"] + 4.0)
         heard.take(client)
