@@ -168,6 +168,24 @@ TEST(Listening, AChangeActsWhereAndWhenItHappens) {
   EXPECT_GE(changed_at(R"("sound_speed": {"kind": "isovelocity", "speed": 1490})", rounding), 6.5);
 }
 
+// A change that is known beforehand changes nothing before it: not even the rounding of what a
+// change before it has made anew, in steps that end after it.
+TEST(Listening, AChangeThatIsKnownChangesNothingBefore) {
+  const auto heard_until = [](double known) {
+    Heard heard;
+    heard.listen(0.001);
+    heard(R"({"command": "ping"})");
+    heard.listen(1.0);
+    heard(R"({"command": "update", "time": 1.5, "array": {"heading_deg": 80}})");
+    if (known > 1.0) heard.listen(known - 1.0);
+    heard(R"({"command": "update", "time": 3.2, "array": {"heading_deg": 70}})");
+    heard.listen(5.0 - known);
+    return heard.rows;
+  };
+  const auto late = heard_until(3.0), beforehand = heard_until(1.0);
+  for (std::size_t c = 0; c < channels; ++c) EXPECT_EQ(beforehand[c], late[c]);
+}
+
 // A target that moves from 1.5 s on at 20 m/s is met at 2 s 10 m farther on, and 6.7 ms later.
 TEST(Listening, ATargetIsWhereItIsWhenItIsStruck) {
   std::string text = support::served_scenario;
