@@ -96,11 +96,13 @@ int plot(const PlotOptions& options) {
     if (!options.scenario.overrides.empty())
       throw InputError({.where = "--set", .got = given, .expected = "a scenario, .toml"});
   }
-  if (options.html && (is_scenario(given) || !is_ping_file(given)))
-    throw InputError(
-        {.where = given,
-         .got = "--html for a file that holds no pings",
-         .expected = "a file of asdic ping; the others have pictures, without --html"});
+  const bool has_page = !is_scenario(given) &&
+                        (is_ping_file(given) || is_study_file(given) || is_comparison_file(given));
+  if (options.html && !has_page)
+    throw InputError({.where = given,
+                      .got = "--html for a file that holds neither pings nor a study",
+                      .expected = "a file of asdic ping or asdic study; the others have pictures, "
+                                  "without --html"});
   const TemporaryFolder folder;
   std::filesystem::path file = given;
   std::string pictures = options.folder;

@@ -8,6 +8,7 @@
 
 #include "app/console.h"
 #include "app/interrupt.h"
+#include "app/pictures.h"
 #include "app/study_comparison.h"
 #include "app/study_options.h"
 #include "app/study_progress.h"
@@ -60,7 +61,10 @@ int study_run(const StudyOptions& options) {
       options.join ? study::run_crew(work, order.run) : study::run_study(work, order.run);
   progress.reset();
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
-  return report(order, outcome, options.quiet, wall.count());
+  const int status = report(order, outcome, options.quiet, wall.count());
+  if (status != 0 || !options.report || options.compare) return status;
+  flush_output();
+  return draw_pictures({order.run.output.string(), "--html"});
 }
 
 }  // namespace
@@ -90,6 +94,9 @@ void add_study_command(Program& program) {
                 "Slurm job array")
             .type_name("I/N|slurm")
             .excludes(range);
+        command.add_flag("--report", options->report,
+                         "then write a page for a browser beside the file: question, answers with "
+                         "their intervals, what was drawn, pictures, seeds and digests");
         command.add_flag("--join", options->join,
                          "make the study together with all processes that run the same command, on "
                          "machines that share its folder; they come and go, and one that is lost "

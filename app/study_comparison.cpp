@@ -9,6 +9,7 @@
 
 #include "app/console.h"
 #include "app/output.h"
+#include "app/pictures.h"
 #include "core/error.h"
 #include "io/ping/provenance.h"
 #include "io/result/result_file.h"
@@ -153,11 +154,14 @@ int compare_studies(const StudyOptions& options, const RunStudy& run) {
     tell("asdic: note: not the same in the rows of all studies: " + list +
          ". Inputs that all vary alike come first in [vary], in one order");
   }
-  if (options.quiet) return 0;
-  print(said);
-  print(fmt::format("{}: {}\n", target.string(),
-                    byte_count(static_cast<double>(std::filesystem::file_size(target)))));
-  return 0;
+  if (!options.quiet) {
+    print(said);
+    print(fmt::format("{}: {}\n", target.string(),
+                      byte_count(static_cast<double>(std::filesystem::file_size(target)))));
+  }
+  if (!options.report) return 0;
+  flush_output();
+  return draw_pictures({target.string(), "--html"});
 }
 
 bool is_comparison_file(const std::string& path) { return filetype_of(path) == "asdic comparison"; }

@@ -18,7 +18,7 @@ struct StudyOptions {
   std::optional<int> threads;
   std::optional<double> until;
   bool fresh = false, force = false, assemble = false, retry = false, quiet = false,
-       compare = false, join = false;
+       compare = false, join = false, report = false;
   std::optional<double> silence;  ///< of workers and ranks [s]
 };
 

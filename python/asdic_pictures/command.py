@@ -253,6 +253,12 @@ def write_page(options) -> None:
     for name in ("format", "dpi", "theme", "only", "limits"):
         if getattr(options, name):
             raise InputError(f"--{name}", "--html beside it", "one of the two: a page has them all")
+    kind = filetype(options.file)
+    if kind in ("asdic study", "asdic comparison"):
+        from asdic_page import study_report
+        path = study_report.write(options.file, page.place(options.file, options.output), kind, options.force)
+        say(f"{path}: a report for a browser")
+        return
     with PingFile(options.file) as data:
         path = page.write(data, page.place(options.file, options.output), options.ping,
                           options.array, options.force)
