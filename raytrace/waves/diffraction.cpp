@@ -19,6 +19,7 @@ constexpr double faintest_beside = 0.01;  // of the rays
 constexpr double slowness_share = 0.02;   // by which slownesses may differ from 1/c
 constexpr std::size_t own_bytes = std::size_t{1} << 30;
 
+constexpr double finer_layers = 10.0;   // in phase: in the dark little is left of great waves
 constexpr double usual_speed = 1500.0;  // of sound [m/s]
 constexpr double blended = 0.005;       // of a range, below a step of the furthest
 
@@ -61,7 +62,7 @@ class WaterborneField {
   [[nodiscard]] WaveAt field(double frequency, double furthest, double range) const {
     const bool source_is_upper = source_ <= receiver_;
     const WaterborneWaves::Need need{.frequency = frequency,
-                                     .cut_for = frequency_,
+                                     .cut_for = finer_layers * frequency_,
                                      .upper = std::min(source_, receiver_),
                                      .lower = std::max(source_, receiver_),
                                      .furthest = furthest};

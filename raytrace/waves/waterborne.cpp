@@ -12,14 +12,16 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// What the surface lets be at the upper edge of the layer of the upper end, and the bottom at the
-/// lower edge of that of the lower end, scaled so that their product is g.
+constexpr std::size_t together = 8;  // layers that an end may be in, for kernels to be known
+
+/// What the surface lets be at an edge above the upper end, and the bottom at one below the lower
+/// end, scaled so that their product is g.
 struct EdgeWaves {
   DepthWave above, below;
 };
 
-/// Those of all wavenumbers of a window: good for all places in two layers.
-struct LayerPair {
+/// Those of all wavenumbers of a window, at two edges.
+struct EdgePair {
   WaterWindow window;
   std::vector<EdgeWaves> waves;  // [window.count]
   [[nodiscard]] std::size_t bytes() const noexcept {
@@ -27,10 +29,10 @@ struct LayerPair {
   }
 };
 
-std::shared_ptr<LayerPair> layer_pair(const Environment& ocean, const WaveColumn& column,
-                                      double frequency, double furthest, std::size_t upper,
-                                      std::size_t lower) {
-  auto pair = std::make_shared<LayerPair>();
+std::shared_ptr<EdgePair> edge_pair(const Environment& ocean, const WaveColumn& column,
+                                    double frequency, double furthest, std::size_t upper,
+                                    std::size_t lower) {
+  auto pair = std::make_shared<EdgePair>();
   pair->window = water_window(ocean, column, frequency, furthest);
   pair->waves.resize(pair->window.count);
   constexpr std::size_t piece = 16;
@@ -38,10 +40,9 @@ std::shared_ptr<LayerPair> layer_pair(const Environment& ocean, const WaveColumn
     for (std::size_t j = begin; j < end; ++j) {
       stop_point();
       const Complex xi = pair->window.at(j);
-      DepthWave above = column.above(xi, upper), below = column.below(xi, lower + 1);
+      DepthWave above = column.above(xi, upper), below = column.below(xi, lower);
       const DepthWave kept = below;
-      for (std::size_t edge = lower + 1; edge > upper; --edge)
-        column.ascend(below, xi, edge, column.edge(edge - 1));
+      column.ascend(below, xi, lower, column.edge(upper));
       // g = −2uv/W, W = uv′ − u′v where both are known; `below` has its derivative upwards.
       const Complex scale = -2.0 / (-above.u * below.du - above.du * below.u);
       // u's growth is in W too, so it cancels, and of v's what it grew on the way up is left.
@@ -78,11 +79,13 @@ WaterborneWaves::WaterborneWaves(const Environment& ocean, const Need& need,
       ExactKey(Kept::water_column, kept.ocean, need.frequency, need.cut_for),
       [&] { return std::make_shared<WaterColumn>(ocean, need.frequency, need.cut_for); });
   const WaveColumn& column = water->column();
-  const std::size_t upper = column.layer_at(need.upper), lower = column.layer_at(need.lower);
+  const std::size_t upper = column.layer_at(need.upper) / together * together,
+                    lower = std::min(column.layers(),
+                                     (column.layer_at(need.lower) / together + 1) * together);
   const auto pair = kept.memory.remember(
       ExactKey(Kept::layer_pair, kept.ocean, need.frequency, need.cut_for, need.furthest, upper,
                lower),
-      [&] { return layer_pair(ocean, column, need.frequency, need.furthest, upper, lower); });
+      [&] { return edge_pair(ocean, column, need.frequency, need.furthest, upper, lower); });
   window_ = pair->window;
   kernels_.resize(window_.count);
   constexpr std::size_t piece = 64;
@@ -92,7 +95,7 @@ WaterborneWaves::WaterborneWaves(const Environment& ocean, const Need& need,
       const Complex xi = window_.at(j);
       auto [u, v] = pair->waves[j];
       column.descend(u, xi, upper, need.upper);
-      column.ascend(v, xi, lower + 1, need.lower);
+      column.ascend(v, xi, lower, need.lower);
       const double grown = std::min(u.growth + v.growth, 100.0);
       const Complex scale = 0.5 * window_.spacing * std::sqrt(2.0 / pi) *
                             window_.weight(xi.real()) * std::sqrt(xi) *

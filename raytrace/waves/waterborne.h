@@ -46,8 +46,8 @@ class WaterColumn {
 /// What a source and a receiver need for their waterborne field at any range up to a furthest: the
 /// kernels of all wavenumbers. Exact for its layers, and smooth in the depths.
 ///
-/// What costs, the waves through all of the water, is asked of `memory` for the two layers that the
-/// ends lie in: an end that rises or sinks by metres finds it known.
+/// What costs, the waves through all of the water, is asked of `memory` for edges of layers beside
+/// the ends: an end that rises or sinks by metres finds it known.
 class WaterborneWaves {
  public:
   struct Need {

@@ -275,19 +275,23 @@ std::size_t WaveColumn::layer_at(double depth) const noexcept {
 }
 
 void WaveColumn::descend(DepthWave& wave, Complex xi, std::size_t edge, double depth) const {
-  const double down = depth - edges_[edge];
-  if (!(down > 0.0)) return;
-  const WaveLayer& layer = layers_[edge];
-  const Complex xi2 = xi * xi, slope = (layer.k2[1] - layer.k2[0]) / layer.thickness;
-  follow(wave, layer.k2[0] - xi2, layer.k2[0] + slope * down - xi2, down);
+  const Complex xi2 = xi * xi;
+  for (; edge < layers_.size() && edges_[edge] < depth; ++edge) {
+    const WaveLayer& layer = layers_[edge];
+    const double down = std::min(depth - edges_[edge], layer.thickness);
+    const Complex slope = (layer.k2[1] - layer.k2[0]) / layer.thickness;
+    follow(wave, layer.k2[0] - xi2, layer.k2[0] + slope * down - xi2, down);
+  }
 }
 
 void WaveColumn::ascend(DepthWave& wave, Complex xi, std::size_t edge, double depth) const {
-  const double up = edges_[edge] - depth;
-  if (!(up > 0.0)) return;
-  const WaveLayer& layer = layers_[edge - 1];
-  const Complex xi2 = xi * xi, slope = (layer.k2[1] - layer.k2[0]) / layer.thickness;
-  follow(wave, layer.k2[1] - xi2, layer.k2[1] - slope * up - xi2, up);
+  const Complex xi2 = xi * xi;
+  for (; edge > 0 && edges_[edge] > depth; --edge) {
+    const WaveLayer& layer = layers_[edge - 1];
+    const double up = std::min(edges_[edge] - depth, layer.thickness);
+    const Complex slope = (layer.k2[1] - layer.k2[0]) / layer.thickness;
+    follow(wave, layer.k2[1] - xi2, layer.k2[1] - slope * up - xi2, up);
+  }
 }
 
 void WaveColumn::kernel(Complex xi, std::span<double> growth, std::span<Complex> g,

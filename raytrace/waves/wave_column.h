@@ -49,8 +49,7 @@ class WaveColumn {
   /// where a wave has died out (350 dB) nothing is looked at.
   [[nodiscard]] DepthWave above(std::complex<double> xi, std::size_t edge) const noexcept;
   [[nodiscard]] DepthWave below(std::complex<double> xi, std::size_t edge) const noexcept;
-  /// Follows the first down from an edge to a depth within the layer below it, the second up from
-  /// an edge to one within the layer above it.
+  /// Follow the first down from an edge to a depth, and the second up.
   void descend(DepthWave& wave, std::complex<double> xi, std::size_t edge, double depth) const;
   void ascend(DepthWave& wave, std::complex<double> xi, std::size_t edge, double depth) const;
   /// The layer that holds a depth, counted from the top.
