@@ -236,7 +236,7 @@ def of_comparison(path) -> tuple:
                 f"<pre>{escape(_words(f['answers']))}</pre>"]
         if unlike:
             body.append(f'<p class="warning">Not the same in the rows of all studies: {escape(", ".join(unlike))}</p>')
-        body += [warnings(f["studies"][name]) for name in comparison.names]
+        body.append("".join(dict.fromkeys(warnings(f["studies"][name]) for name in comparison.names)))
         body += ["<h2>Pictures</h2>", pictures, "<h2>Differences</h2>",
                  '<p class="note">Each bin\'s interval holds by itself: of 20 at 95 %, one is expected to miss.</p>',
                  *map(summary_table, order), "<h2>To make it again</h2>",

@@ -93,7 +93,7 @@ def draw_line(comparison: Comparison, table: SummaryTable):
     for k, (name, words) in enumerate(comparison.pairs()):
         band(axes[1], table, name, style.colour(count + k), words)
     axes[1].axhline(0.0, color=style.GREY, lw=0.8, ls="--")
-    axes[1].set_ylabel(f"difference{of_unit}")
+    axes[1].set_ylabel(f"difference{of_unit.split(' re ')[0]}")
     axes[1].set_xlabel(x.label())
     heading(axes[0], comparison, "bands hold for each bin by itself")
     for a in axes:
@@ -127,7 +127,7 @@ def draw_map(comparison: Comparison, table: SummaryTable):
         style.image_frame(a)
         a.set_xlabel(x.label())
         a.set_ylabel(y.label())
-        unit = table[name].unit
+        unit = table[name].unit.split(" re ")[0]
         fig.colorbar(image, ax=a, label=words + (f" / {unit}" if unit and unit != "1" else ""))
     return fig
 
