@@ -56,7 +56,8 @@ escape = html.escape
 
 
 def number(value: float) -> str:
-    return "–" if not np.isfinite(value) else f"{value:.4g}".replace("-", "−")
+    digits = 6 if abs(value) >= 1000.0 else 4  # 22000, not 2.2e+04
+    return "–" if not np.isfinite(value) else f"{value:.{digits}g}".replace("-", "−")
 
 
 def table(head: list, rows: list, text: bool = False) -> str:
