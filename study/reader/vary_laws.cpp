@@ -8,6 +8,7 @@
 #include "core/text.h"
 #include "io/scenario/scenario_reader.h"
 #include "io/text/csv_table.h"
+#include "study/reader/vary_given.h"
 #include "study/reader/vary_profiles.h"
 
 namespace asdic::detail::study {
@@ -211,11 +212,19 @@ TrackLaw read_track(TomlTable& table, const Variable& variable, const Study& stu
 
 }  // namespace
 
-AnyLaw read_law(TomlTable& table, const TomlValue& value, const Variable& variable,
-                const Study& study) {
-  const std::string name =
-      table.choice("law", {"uniform", "normal", "log_normal", "triangular", "rayleigh", "weibull",
-                           "categorical", "list", "grid", "track", "profile_eof", "profile_casts"});
+AnyLaw read_law(TomlTable& table, const TomlValue& value, Variable& variable, const Study& study,
+                const Others& others, bool in_branch) {
+  if (table.has("given")) return read_conditional(table, value, variable, study, others);
+  const std::string name = table.choice(
+      "law", {"uniform", "normal", "log_normal", "triangular", "rayleigh", "weibull", "categorical",
+              "list", "grid", "track", "profile_eof", "profile_casts", "expression"});
+  if (variable.keys.empty() &&
+      (name == "track" || name == "profile_eof" || name == "profile_casts" || table.has("rows")))
+    throw table.fault("keys", "a key to write: this law draws no single number");
+  if (in_branch && name == "list")
+    throw table.fault("law",
+                      "\"categorical\" or \"grid\": a list goes by the number of the realisation, "
+                      "whichever of the laws it takes");
   if (name == "categorical" || name == "list" || name == "grid")
     return read_choice(name, table, value, variable, study.design);
   if (name == "profile_eof") return read_modes(table, study);
@@ -225,6 +234,7 @@ AnyLaw read_law(TomlTable& table, const TomlValue& value, const Variable& variab
     return casts;
   }
   if (name == "track") return read_track(table, variable, study);
+  if (name == "expression") return read_expression(table, variable, others);
   return read_number_law(name, table);
 }
 
