@@ -52,7 +52,7 @@ std::string identity(const Study& study) {
     if (const TomlValue* value = study.document.find(table))
       write(*value, "", study.path.parent_path(), text);
   // The order of the variables is that of their lines, which the tree does not tell.
-  for (const Variable& variable : study.variables) text += variable.name + ";";
+  for (const Variable& variable : study.variables) text += variable.name + ";" + variable.digest;
   for (const OwnMeasure& own : study.measure.own)
     text += "own=" + own.name + ' ' + own.version + ';';
   return sha256(text);

@@ -113,6 +113,9 @@ Study read_study(const std::filesystem::path& path, std::span<const std::string>
   study.document = keep(std::move(study.document), true);
   TomlTable own(study.document);
   study.variables = read_vary(study.document, study);
+  for (const Variable& variable : study.variables)
+    for (const std::string& note : variable.notes)
+      study.warnings.push_back(variable.origin + ": vary." + variable.name + ": " + note);
   if (own.has("correlation"))
     study.correlation = read_correlation(own.table("correlation"),
                                          *study.document.find("correlation"), study.variables);

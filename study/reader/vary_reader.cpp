@@ -8,6 +8,7 @@
 #include "core/text.h"
 #include "core/unit_text.h"
 #include "io/scenario/catalogue.h"
+#include "io/text/toml_writer.h"
 #include "study/expression/names.h"
 #include "study/reader/vary_laws.h"
 #include "study/reader/vary_profiles.h"
@@ -75,7 +76,8 @@ bool is_profile_law(const TomlValue& entry) {
   }
   const TomlValue* law = entry.find("law");
   const auto* name = law == nullptr ? nullptr : std::get_if<std::string>(&law->data);
-  return name != nullptr && (*name == "profile_eof" || *name == "profile_casts");
+  return name != nullptr &&
+         (*name == "profile_eof" || *name == "profile_casts" || *name == "climatology");
 }
 
 std::vector<std::string> read_keys(const TomlEntry& entry, TomlTable& table) {
@@ -238,6 +240,7 @@ std::vector<Variable> read_vary(const TomlValue& document, const Study& study) {
       if (one.done || !std::all_of(names.begin(), names.end(), known)) continue;
       one.variable.law = read_law(one.table, one.entry->value, one.variable, study, others);
       one.table.finish();
+      one.variable.text = inline_toml(one.entry->value);
       others.push_back(&one.variable);
       one.done = more = true;
     }

@@ -29,6 +29,8 @@ std::size_t dimensions(const NumberLaw&) { return 1; }
 std::size_t dimensions(const ChoiceLaw& law) { return law.kind == ChoiceLaw::Kind::weighted; }
 std::size_t dimensions(const TrackLaw& law) { return law.speed ? 5 : 3; }
 std::size_t dimensions(const ModesLaw& law) { return law.modes.size(); }
+std::size_t dimensions(const TableLaw&) { return 1; }
+std::size_t dimensions(const TimeSeriesLaw&) { return 1; }
 std::size_t dimensions(const ExpressionLaw&) { return 0; }
 /// Those of the branch with the most: one is drawn, out of the same coordinates.
 std::size_t dimensions(const ConditionalLaw& law) {
@@ -76,6 +78,14 @@ std::size_t choose(const ChoiceLaw& law, std::span<const double> u, std::span<co
   const auto& cumulative = law.cumulative;
   const auto it = std::upper_bound(cumulative.begin(), cumulative.end() - 1, u[0]);
   return static_cast<std::size_t>(it - cumulative.begin());
+}
+
+std::size_t choose(const TableLaw& law, std::span<const double> u) {
+  const std::size_t n = law.data->rows();
+  if (law.cumulative.empty())
+    return std::min(n - 1, static_cast<std::size_t>(u[0] * static_cast<double>(n)));
+  const auto it = std::upper_bound(law.cumulative.begin(), law.cumulative.end() - 1, u[0]);
+  return static_cast<std::size_t>(it - law.cumulative.begin());
 }
 
 std::size_t choose(const ConditionalLaw& law, std::span<const double> u,
@@ -142,6 +152,46 @@ std::vector<InputColumn> columns(const ModesLaw& law, const Variable& v) {
   return made;
 }
 
+/// Columns of data: those of keys have their units.
+void append_columns(const DataRows& data, const Variable& v, std::vector<InputColumn>& made) {
+  for (std::size_t c = 0; c < data.columns.size(); ++c) {
+    const auto [least, greatest] =
+        std::minmax_element(data.columns[c].begin(), data.columns[c].end());
+    const bool keyed = c < v.keys.size();
+    made.push_back({.name = data.columns.size() == 1 ? v.name : v.name + '_' + data.names[c],
+                    .unit = keyed ? number_at(v, c).unit : "1",
+                    .meaning = keyed ? number_at(v, c).meaning : data.names[c] + " of the data",
+                    .ends = {*least, *greatest}});
+  }
+}
+
+std::vector<InputColumn> columns(const TableLaw& law, const Variable& v) {
+  std::vector<InputColumn> made;
+  append_columns(*law.data, v, made);
+  return made;
+}
+
+std::vector<InputColumn> columns(const TimeSeriesLaw& law, const Variable& v) {
+  std::vector<InputColumn> made{{.name = v.name + "_time",
+                                 .unit = law.unit,
+                                 .meaning = "time in the series",
+                                 .ends = law.span}};
+  if (!law.track) {
+    append_columns(*law.data, v, made);
+    return made;
+  }
+  const std::string& key = v.keys.front();
+  const auto add = [&](const char* name, const char* unit, const char* meaning) {
+    made.push_back({.name = v.name + '_' + name, .unit = unit, .meaning = key + ": " + meaning});
+  };
+  add("east", "m", "east of the map's origin");
+  add("north", "m", "north of the map's origin");
+  add("depth", "m", "depth");
+  add("speed", "m/s", "horizontal speed");
+  add("course_deg", "degrees", "course, true");
+  return made;
+}
+
 std::vector<InputColumn> columns(const ExpressionLaw&, const Variable& v) {
   return {{.name = v.name, .unit = number_at(v, 0).unit, .meaning = number_at(v, 0).meaning}};
 }
@@ -175,6 +225,61 @@ void values_of(const ModesLaw& law, std::span<const double> u, std::span<const d
                std::vector<double>& values) {
   for (std::size_t k = 0; k < law.amplitudes.size(); ++k)
     values.push_back(law.amplitudes[k].quantile(u[k]));
+}
+
+void values_of(const TableLaw& law, std::span<const double> u, std::span<const double>, std::size_t,
+               std::vector<double>& values) {
+  const std::size_t row = choose(law, u);
+  for (const std::vector<double>& column : law.data->columns) values.push_back(column[row]);
+}
+
+/// Between which rows a time lies, and how far towards the later one.
+struct Between {
+  std::size_t row = 0;
+  double share = 0.0;
+};
+Between between(const TimeSeriesLaw& law, double time) {
+  const auto after = std::upper_bound(law.time.begin(), law.time.end(), time);
+  const auto row =
+      static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, after - law.time.begin() - 1));
+  if (row + 1 >= law.time.size()) return {row, 0.0};
+  return {row, (time - law.time[row]) / (law.time[row + 1] - law.time[row])};
+}
+
+/// Velocity of a track at a time: of the piece that it lies in, at the last row of that before it.
+Vec3 velocity_at(const TimeSeriesLaw& law, double time) {
+  const std::size_t row = std::min(between(law, time).row, law.time.size() - 2);
+  const double seconds = (law.time[row + 1] - law.time[row]) * law.seconds;
+  Vec3 moves = Vec3::Zero();
+  for (int c = 0; c < 3; ++c) {
+    const std::vector<double>& x = law.data->columns[static_cast<std::size_t>(c)];
+    moves[c] = (x[row + 1] - x[row]) / seconds;
+  }
+  return moves;
+}
+
+void values_of(const TimeSeriesLaw& law, std::span<const double> u, std::span<const double>,
+               std::size_t, std::vector<double>& values) {
+  const double time = law.span.at(u[0]);
+  const auto [row, share] = between(law, time);
+  values.push_back(time);
+  for (std::size_t c = 0; c < law.data->columns.size(); ++c) {
+    const std::vector<double>& x = law.data->columns[c];
+    if (law.by_row || row + 1 >= x.size()) {
+      values.push_back(x[row]);
+      continue;
+    }
+    double step = x[row + 1] - x[row];
+    const bool turns = law.angles[c] && std::abs(step) > 180.0;
+    if (turns) step -= std::copysign(360.0, step);
+    const double there = x[row] + share * step;
+    values.push_back(!turns ? there : there < 0.0 ? there + 360.0 : std::fmod(there, 360.0));
+  }
+  if (!law.track) return;
+  const Vec3 moves = velocity_at(law, time);
+  values.push_back(moves.head<2>().norm());
+  const double course = degrees(std::atan2(moves.x(), moves.y()));
+  values.push_back(course < 0.0 ? course + 360.0 : course);
 }
 
 void values_of(const ExpressionLaw& law, std::span<const double>, std::span<const double> given,
@@ -237,6 +342,33 @@ void write(const ModesLaw& law, const Variable& v, std::span<const double> value
     value_at(scenario, key, v.origin) = {.data = table, .origin = v.origin};
 }
 
+/// A number at a key; a whole one where whole ones alone may stand.
+void write_number(const Variable& v, std::size_t key, double x, TomlValue& scenario) {
+  TomlValue value{.data = x, .origin = v.origin};
+  if (number_at(v, key).whole && x == std::round(x) && std::abs(x) < 0x1p53)
+    value.data = static_cast<std::int64_t>(x);
+  value_at(scenario, v.keys[key], v.origin) = std::move(value);
+}
+
+void write(const TableLaw&, const Variable& v, std::span<const double> values, std::size_t,
+           TomlValue& scenario) {
+  for (std::size_t k = 0; k < v.keys.size(); ++k) write_number(v, k, values[k], scenario);
+}
+
+void write(const TimeSeriesLaw& law, const Variable& v, std::span<const double> values, std::size_t,
+           TomlValue& scenario) {
+  if (!law.track) {
+    for (std::size_t k = 0; k < v.keys.size(); ++k) write_number(v, k, values[k + 1], scenario);
+    return;
+  }
+  const Vec3 moves = velocity_at(law, values[0]);
+  const std::array<double, 3> velocity{moves.x(), moves.y(), moves.z()};
+  for (const std::string& key : v.keys) {
+    value_at(scenario, key + ".position", v.origin) = array_of(values.subspan(1, 3), v.origin);
+    value_at(scenario, key + ".velocity", v.origin) = array_of(velocity, v.origin);
+  }
+}
+
 void write(const ExpressionLaw& law, const Variable& v, std::span<const double> values, std::size_t,
            TomlValue& scenario) {
   const double x = values[0];
@@ -244,12 +376,7 @@ void write(const ExpressionLaw& law, const Variable& v, std::span<const double> 
     throw InputError({.where = v.origin + ": vary." + v.name,
                       .got = to_text(x) + " of " + in_quotes(law.expression.text()),
                       .expected = "a finite number"});
-  for (std::size_t k = 0; k < v.keys.size(); ++k) {
-    TomlValue value{.data = x, .origin = v.origin};
-    if (number_at(v, k).whole && x == std::round(x) && std::abs(x) < 0x1p53)
-      value.data = static_cast<std::int64_t>(x);
-    value_at(scenario, v.keys[k], v.origin) = std::move(value);
-  }
+  for (std::size_t k = 0; k < v.keys.size(); ++k) write_number(v, k, x, scenario);
 }
 
 void write(const ConditionalLaw& law, const Variable& v, std::span<const double> values,
@@ -300,7 +427,8 @@ bool places(const AnyLaw& law) {
   if (const auto* conditional = std::get_if<ConditionalLaw>(&law))
     return std::any_of(conditional->branches.begin(), conditional->branches.end(),
                        [](const Branch& branch) { return places(branch.law); });
-  return std::holds_alternative<TrackLaw>(law);
+  const auto* series = std::get_if<TimeSeriesLaw>(&law);
+  return std::holds_alternative<TrackLaw>(law) || (series != nullptr && series->track);
 }
 
 std::vector<double> values_of_column(const Variable& variable, std::size_t column) {

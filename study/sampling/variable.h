@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -58,6 +59,33 @@ struct ExpressionLaw {
   std::vector<std::size_t> names{};  ///< [expression.names()] which of Variable::given
 };
 
+/// Rows of measured numbers; a few of their columns. Copies of laws share them.
+struct DataRows {
+  std::vector<std::string> names;            ///< [columns] what they are called behind the input's
+  std::vector<std::vector<double>> columns;  ///< [columns][rows]
+  [[nodiscard]] std::size_t rows() const { return columns.empty() ? 0 : columns[0].size(); }
+};
+
+/// A row of a table, drawn whole. Its first columns go to the keys, one each; the others are drawn
+/// for whoever looks at them.
+struct TableLaw {
+  std::shared_ptr<const DataRows> data;
+  std::vector<double> cumulative;  ///< [rows] of the weights, the last one 1; empty: all alike
+};
+
+/// What a series of measurements was at a time drawn evenly. Columns as of TableLaw, or those of a
+/// track (east, north, depth), which writes `position` and `velocity` below its keys.
+struct TimeSeriesLaw {
+  std::shared_ptr<const DataRows> data;
+  std::vector<double> time;  ///< [rows] rising
+  std::vector<bool> angles;  ///< [columns] degrees, which are turned by the shorter way
+  Span span;                 ///< from which the time is drawn
+  bool by_row = false;       ///< each row holds until the next; else straight between them
+  bool track = false;
+  std::string unit;      ///< of the time, "h"
+  double seconds = 1.0;  ///< of one unit of it
+};
+
 struct Branch;
 
 /// What a column of an input is called and counted in.
@@ -78,8 +106,8 @@ struct ConditionalLaw {
   std::vector<InputColumn> columns{};  ///< of all branches
 };
 
-using AnyLaw =
-    std::variant<NumberLaw, ChoiceLaw, TrackLaw, ModesLaw, ExpressionLaw, ConditionalLaw>;
+using AnyLaw = std::variant<NumberLaw, ChoiceLaw, TrackLaw, ModesLaw, TableLaw, TimeSeriesLaw,
+                            ExpressionLaw, ConditionalLaw>;
 
 struct Branch {
   std::string name;  ///< "winter", "from 5 to 10"
@@ -103,6 +131,9 @@ struct Variable {
   std::string origin;                     ///< where it was written, "study.toml:12"
   AnyLaw law;
   std::vector<std::string> given = {};  ///< columns of others that its law looks at
+  std::string text = {};                ///< the law, as the study file has it
+  std::string digest = {};              ///< of files that its law was read from, for the identity
+  std::vector<std::string> notes = {};  ///< what the user should know of them
 };
 
 /// A whole or real number as such; none for anything else.
