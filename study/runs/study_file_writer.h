@@ -24,6 +24,7 @@ class StudyFileWriter {
     write_table();
     write_series(series);
     write_summary();
+    write_laws();
     write_manifest();
     write_run();
     file_.close();
@@ -34,6 +35,7 @@ class StudyFileWriter {
   void write_table();
   void write_series(const SeriesSource& series);
   void write_summary();
+  void write_laws();
   std::string write_rows(const SummaryTable& table, const std::string& group);
   void write_coordinates(const SummaryTable& table, const std::string& group);
   void write_manifest();
