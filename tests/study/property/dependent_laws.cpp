@@ -306,16 +306,19 @@ TEST(Correlation, RanksAreCorrelatedAsTheCopulaSays) {
   }
 }
 
+// Enough rows to tell a deviation of the scores that is 8 % too small: that moves Φ by 0.02.
 TEST(Correlation, LeavesEachLawAsItIs) {
-  const Study study = study_of(correlated("[[1, 0.9, 0.5], [0.9, 1, 0.6], [0.5, 0.6, 1]]"));
-  const auto x = drawn(study), alone = drawn(study_of(three));
+  constexpr std::uint64_t many = 40000;
+  const Study study =
+      study_of(correlated("[[1, 0.9, 0.5], [0.9, 1, 0.6], [0.5, 0.6, 1]]"), "random", many);
+  const auto x = drawn(study), alone = drawn(study_of(three, "random", many));
   EXPECT_EQ(x.at("wind_speed"), alone.at("wind_speed"));  // the first one, to the bit
   EXPECT_NE(x.at("strength_db"), alone.at("strength_db"));
   for (const Variable& variable : study.variables) {
     const CutLaw& law = std::get<NumberLaw>(variable.law).law;
     const auto own = [&](double v) { return law.distribution(v); };
     EXPECT_LT(distance(x.at(variable.name), own), 2.69) << variable.name;
-    const auto other = [&](double v) { return std::pow(law.distribution(v), 1.15); };
+    const auto other = [&](double v) { return std::pow(law.distribution(v), 1.05); };
     EXPECT_GT(distance(x.at(variable.name), other), 2.69) << variable.name;
   }
 }
