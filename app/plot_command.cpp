@@ -6,6 +6,7 @@
 #include "app/command.h"
 #include "app/picture_source.h"
 #include "app/pictures.h"
+#include "app/study_comparison.h"
 #include "app/study_info.h"
 #include "core/error.h"
 #include "io/hdf5/readable.h"
@@ -110,6 +111,8 @@ int plot(const PlotOptions& options) {
     if (pictures.empty()) pictures = folder_beside(given);
   } else if (is_study_file(given)) {
     study::StudyFile(given).check_parts();
+  } else if (is_comparison_file(given)) {
+    check_comparison(given);
   } else if (is_area_file(given)) {
     static_cast<void>(read_coverage_summary(given));
   } else if (is_ping_file(given)) {

@@ -274,6 +274,17 @@ def draw_study(options, wish: Wishes) -> None:
             wish.leave_out(name, reason)
 
 
+def draw_studies(options, wish: Wishes) -> None:
+    """What studies differ by."""
+    from . import study_comparison, style
+
+    comparison = study_comparison.read(options.file)
+    wish.check_names(study_comparison.names_of(comparison))
+    with style.look(wish.theme):
+        for name, figure in study_comparison.draw(comparison, wish.only):
+            wish.write(api.tagged(figure, **comparison.tags), name, figure.name)
+
+
 def draw_comparison(options) -> None:
     from . import results, style
 
@@ -312,6 +323,9 @@ def run(argv=None) -> int:
         return 0
     if kind == "asdic study":
         draw_study(options, wish)
+        return 0
+    if kind == "asdic comparison":
+        draw_studies(options, wish)
         return 0
     if kind in KINDS:
         draw_result(options, wish)
