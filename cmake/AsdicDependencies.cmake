@@ -22,6 +22,7 @@ find_library(HDF5_HL_LIBRARY NAMES hdf5_hl hdf5_serial_hl HINTS ${hdf5_hdf5_LIBR
 target_link_libraries(PkgConfig::hdf5_hdf5 INTERFACE ${HDF5_HL_LIBRARY})
 asdic_pkg_config(netcdf::netcdf netcdf)
 asdic_pkg_config(sndfile::sndfile sndfile)
+asdic_pkg_config(muparser::muparser muparser)
 
 find_path(RANDOM123_INCLUDE_DIR Random123/philox.h REQUIRED)
 add_library(random123::random123 INTERFACE IMPORTED GLOBAL)

@@ -2,7 +2,7 @@
 """The folders include one another in one direction only, so do the rooms in them, and each borrowed library stays where it belongs.
 
 core <- raytrace <- reverb <- sonar <- processing <- io <- study, serve <- app, library. library implements include/asdic, which includes
-itself and the standard library alone. HDF5, netCDF, TOML and libsndfile in io/*.cpp; SQLite and MPI in
+itself and the standard library alone. HDF5, netCDF, TOML and libsndfile in io/*.cpp; SQLite, muParser and MPI in
 study/; Asio in serve/; FFTW in one file of sonar/; TBB in .cpp files; public headers show Eigen and the standard library only.
 Parallel loops are raytrace/parallel/parallel.h's, which are left when the realisation they belong to is called off. What depends on the
 instruction level (core/level_namespace.h) is included by sources that are compiled once a level (LEVELS in CMakeLists.txt) alone.
@@ -15,7 +15,7 @@ ORDER = ["core", "raytrace", "reverb", "sonar", "processing", "io", "study", "se
 PUBLIC = "asdic"  # include/asdic
 ROOMS = {  # in the folders named here every file lies in a room, and a room includes itself and those before it
     "io": ["files", "isolated", "text", "hdf5", "wav", "mat", "settings", "climatology", "scenario", "bellhop", "compare", "ping", "result", "processing"],
-    "study": ["sampling", "plan", "measures", "summary", "comparison", "reader", "journal", "runs", "crew", "mpi"],
+    "study": ["expression", "sampling", "plan", "measures", "summary", "comparison", "reader", "journal", "runs", "crew", "mpi"],
     "raytrace": ["math", "parallel", "ocean", "area", "cases", "layered", "tracing", "paths", "beams", "waves", "volume", "places", "bellhop_emulation", "runs", "warnings", ""],
     "reverb": ["scattering", "pairs", "fields", "power"],
     "sonar": ["signal", "noise_spectra", "scenario", "paths", "noise", "reverberation", "synthesis", "echoes", "warnings", "ping", "channel"],
@@ -23,7 +23,7 @@ ROOMS = {  # in the folders named here every file lies in a room, and a room inc
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 INCLUDE = re.compile(r'^\s*#\s*include\s+([<"])([^>"]+)[>"]', re.MULTILINE)
 HOMES = {  # header prefix -> (folders whose .cpp files may include it)
-    "sqlite3": ["study"], "mpi.h": ["study"], "asio": ["serve"], "hdf5": ["io"], "netcdf": ["io"], "toml++": ["io"], "sndfile": ["io"], "openssl": ["io", "study"],
+    "sqlite3": ["study"], "muParser": ["study"], "mpi.h": ["study"], "asio": ["serve"], "hdf5": ["io"], "netcdf": ["io"], "toml++": ["io"], "sndfile": ["io"], "openssl": ["io", "study"],
     "fftw3": ["sonar"], "tbb/": ["raytrace", "reverb", "sonar", "processing", "io", "study", "serve", "app"], "oneapi/tbb": ["raytrace", "reverb", "sonar", "processing", "io", "study", "serve", "app"],
     "Random123": ["core"], "nlohmann": ["io", "study", "serve", "app"], "CLI": ["app"], "fmt/": ["app"],
 }

@@ -84,6 +84,21 @@ class SummaryTable:
 
 
 @dataclass
+class Law:
+    """What a column of an input was drawn by (`laws` in the file)."""
+
+    value: np.ndarray
+    cumulative: np.ndarray
+    probability: np.ndarray | None  # of single values; none where there is a density
+
+    def expected(self, edges) -> np.ndarray:
+        """Shares between edges."""
+        if self.probability is not None:
+            return np.histogram(self.value, edges, weights=self.probability)[0]
+        return np.diff(np.interp(edges, self.value, self.cumulative, left=0.0, right=1.0))
+
+
+@dataclass
 class Study:
     path: str
     title: str
@@ -95,6 +110,7 @@ class Study:
     confidence: float = np.nan          # of every interval
     false_alarms: float | None = None   # probability that the threshold is made for
     tags: dict = field(default_factory=dict)
+    laws: dict = field(default_factory=dict)  # of Law, by column
 
     @property
     def interval(self) -> str:
@@ -148,6 +164,17 @@ def _summary(name, group) -> SummaryTable:
                         [_column(n, group[n]) for n in order])
 
 
+def _laws(f) -> dict:
+    """Of all rows; files before version 1.4 have none."""
+    laws = {}
+    for name, group in f.get("laws", {}).items():
+        if "value" in group:
+            probability = np.asarray(group["probability"][()]) if "probability" in group else None
+            laws[name] = Law(np.asarray(group["value"][()]), np.asarray(group["cumulative"][()]),
+                             probability)
+    return laws
+
+
 def _order(f) -> list:
     """Names of the table's columns as the study has them: HDF5 lists them by the alphabet."""
     there = list(f["table"])
@@ -181,7 +208,8 @@ def read(path) -> Study:
                          _false_alarms(f),
                          dict(title=_text(f.attrs.get("title", "")),
                               version=_text(f.attrs.get("program_version", "")),
-                              digest=_text(f.attrs.get("identity", ""))))
+                              digest=_text(f.attrs.get("identity", ""))),
+                         _laws(f))
     except (KeyError, OSError, ValueError) as error:
         raise InputError(path, f"what cannot be read ({error})",
                          "a whole file of `asdic study` or `asdic merge`") from error

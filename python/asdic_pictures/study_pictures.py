@@ -286,6 +286,11 @@ def draw_roc(study: Study) -> dict:
     return {"roc": fig}
 
 
+def draw_expected(a, edges, law, rows, scale=1.0):
+    """The numbers of rows that a law gives to the bins of a histogram."""
+    a.stairs(rows * law.expected(np.asarray(edges) / scale), edges, color="black", linewidth=1.0)
+
+
 def draw_histograms(study: Study) -> dict:
     columns = [c for c in study.columns if not c.is_constant()]
     all_of_them = len(columns)
@@ -293,11 +298,13 @@ def draw_histograms(study: Study) -> dict:
     if not columns:
         return {}
     some = f", {len(columns)} of {all_of_them} columns" if len(columns) < all_of_them else ""
-    fig, axes = panels(study, "Inputs as they were drawn (grey) and measures (blue)" + some,
+    lines = ", their laws (black)" if any(c.name in study.laws for c in columns) else ""
+    fig, axes = panels(study, f"Inputs as they were drawn (grey){lines} and measures (blue)" + some,
                        len(columns))
     heading(axes[0], study)
     for column, a in zip(columns, axes):
         values = column.values[np.isfinite(column.values)] * column.scale()
+        law = study.laws.get(column.name)
         colour = style.BLUE if column.role == "measure" else style.GREY
         different = np.unique(values).size
         yes_or_no = column.name.startswith(YES_OR_NO) and set(values) <= {0.0, 1.0}
@@ -306,6 +313,8 @@ def draw_histograms(study: Study) -> dict:
             a.bar(np.arange(count.size), count, color=colour)
             names = [style.shorten(n, 14) for n in column.labels]
             a.set_xticks(np.arange(len(names)), names, rotation=20 if len(names) > 3 else 0)
+            if law is not None:
+                draw_expected(a, np.arange(count.size + 1) - 0.5, law, values.size)
         elif yes_or_no or different <= min(12, values.size // 4):  # a number of phones, say
             there, count = np.unique(values, return_counts=True)
             a.bar(np.arange(there.size), count, width=0.7, color=colour)
@@ -314,7 +323,9 @@ def draw_histograms(study: Study) -> dict:
             if there.size < 3:
                 a.set_xlim(-0.75, there.size - 0.25)
         else:
-            a.hist(values, bins=min(60, max(8, int(np.sqrt(values.size)))), color=colour)
+            edges = a.hist(values, bins=min(60, max(8, int(np.sqrt(values.size)))), color=colour)[1]
+            if law is not None:
+                draw_expected(a, edges, law, values.size, column.scale())
         a.set_xlabel(column.label())
         a.set_ylabel("realisations")
     return {"histograms": fig}

@@ -28,6 +28,7 @@ std::uint64_t grid_points(const std::vector<Variable>& variables) {
 Sampler::Sampler(const Study& study)
     : on_grid_(study.design == Design::grid),
       variables_(study.variables),
+      correlation_(study.correlation),
       design_(study.design, study.seed, study.realisations, dimensions_of(study)) {
   for (const Variable& variable : variables_) {
     first_column_.push_back(columns_.size());
@@ -39,12 +40,39 @@ Sampler::Sampler(const Study& study)
                           .labels = std::move(column.labels)});
   }
   first_column_.push_back(columns_.size());
+  std::size_t dimension = 0;
+  for (const Variable& variable : variables_) {
+    first_dimension_.push_back(dimension);
+    dimension += study::dimensions_of(variable, on_grid_);
+    given_.emplace_back();
+    for (const std::string& name : variable.given)
+      given_.back().push_back(static_cast<std::size_t>(
+          std::find_if(columns_.begin(), columns_.end(),
+                       [&](const Column& column) { return column.name == name; }) -
+          columns_.begin()));
+  }
+  order_ = drawing_order(variables_);
 }
 
 Sampler::Drawn Sampler::draw(std::uint64_t index) const {
   std::vector<double> u(design_.dimensions());
   design_.point(index, u);
+  return draw(index, u);
+}
+
+Sampler::Drawn Sampler::draw(std::uint64_t index, std::span<const double> u) const {
+  std::vector<double> own;  // with the correlation
+  if (!correlation_.inputs.empty()) {
+    own.assign(u.begin(), u.end());
+    std::vector<double> together;
+    for (const std::size_t v : correlation_.inputs) together.push_back(own[first_dimension_[v]]);
+    correlation_.copula.apply(together);
+    for (std::size_t i = 0; i < together.size(); ++i)
+      own[first_dimension_[correlation_.inputs[i]]] = together[i];
+    u = own;
+  }
   Drawn drawn;
+  drawn.values.assign(columns_.size(), 0.0);
   drawn.choices.assign(variables_.size(), 0);
   // Of the grid the last variable changes fastest: a number of mixed radix.
   std::uint64_t rest = index;
@@ -53,17 +81,21 @@ Sampler::Drawn Sampler::draw(std::uint64_t index) const {
       drawn.choices[v] = rest % n;
       rest /= n;
     }
-  std::size_t at = 0;
-  for (std::size_t v = 0; v < variables_.size(); ++v) {
+  std::vector<double> given, values;
+  for (const std::size_t v : order_) {
     const Variable& variable = variables_[v];
-    const std::size_t count = study::dimensions_of(variable, on_grid_);
-    const std::span<const double> mine(u.data() + at, count);
+    const auto mine = u.subspan(first_dimension_[v], study::dimensions_of(variable, on_grid_));
+    given.clear();
+    for (const std::size_t column : given_[v]) given.push_back(drawn.values[column]);
     const auto* choice = std::get_if<ChoiceLaw>(&variable.law);
-    if (choice != nullptr && !on_grid_)
-      drawn.choices[v] = choice->kind == ChoiceLaw::Kind::in_turn ? index % choice->values.size()
-                                                                  : chosen(variable, mine[0]);
-    append_values(variable, mine, drawn.choices[v], drawn.values);
-    at += count;
+    if (choice != nullptr && choice->kind == ChoiceLaw::Kind::in_turn && !on_grid_)
+      drawn.choices[v] = index % choice->values.size();
+    else if (choice == nullptr || !on_grid_)
+      drawn.choices[v] = chosen(variable, mine, given);
+    values.clear();
+    append_values(variable, mine, given, drawn.choices[v], values);
+    std::copy(values.begin(), values.end(),
+              drawn.values.begin() + static_cast<std::ptrdiff_t>(first_column_[v]));
   }
   return drawn;
 }

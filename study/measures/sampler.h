@@ -26,6 +26,10 @@ class Sampler {
     std::vector<std::size_t> choices;  ///< [variables] 0 for those without choices
   };
   [[nodiscard]] Drawn draw(std::uint64_t index) const;
+  /// The same of a point that is not the design's. \param u  [dimensions()] each in (0, 1), before
+  /// the correlation of inputs
+  [[nodiscard]] Drawn draw(std::uint64_t index, std::span<const double> u) const;
+  [[nodiscard]] std::size_t dimensions() const noexcept { return design_.dimensions(); }
 
   /// Puts the drawn values where their keys lead. \throws InputError if a path leads nowhere
   void apply(const Drawn& drawn, TomlValue& scenario) const;
@@ -36,7 +40,11 @@ class Sampler {
  private:
   bool on_grid_;
   std::vector<Variable> variables_;
-  std::vector<std::size_t> first_column_;  // [variables + 1]
+  Correlation correlation_;
+  std::vector<std::size_t> first_column_;        // [variables + 1]
+  std::vector<std::size_t> first_dimension_;     // [variables]
+  std::vector<std::vector<std::size_t>> given_;  // [variables] columns that each looks at
+  std::vector<std::size_t> order_;               // in which they are drawn
   std::vector<Column> columns_;
   PointDesign design_;
 };

@@ -48,11 +48,11 @@ std::string identity(const Study& study) {
     if (run->table() != nullptr && run->table()->empty()) erase_key(scenario, "run");
   }
   write(scenario, "", study.scenario_path.parent_path(), text);
-  for (const char* table : {"vary", "measure"})
+  for (const char* table : {"vary", "correlation", "measure"})
     if (const TomlValue* value = study.document.find(table))
       write(*value, "", study.path.parent_path(), text);
   // The order of the variables is that of their lines, which the tree does not tell.
-  for (const Variable& variable : study.variables) text += variable.name + ";";
+  for (const Variable& variable : study.variables) text += variable.name + ";" + variable.digest;
   for (const OwnMeasure& own : study.measure.own)
     text += "own=" + own.name + ' ' + own.version + ';';
   return sha256(text);

@@ -8,6 +8,7 @@
 
 #include "study/plan/measure_plan.h"
 #include "study/plan/summary_plan.h"
+#include "study/sampling/correlation.h"
 #include "study/sampling/design.h"
 #include "study/sampling/variable.h"
 
@@ -15,6 +16,13 @@ namespace asdic::detail::study {
 
 /// What becomes of a realisation whose drawn values make no scenario (a target below the bottom).
 enum class OnError { stop, skip };
+
+/// [correlation]: inputs that depend on one another by a Gaussian copula.
+struct Correlation {
+  std::vector<std::size_t> inputs{};  ///< which of the variables; none: all are independent
+  bool of_ranks = false;              ///< the matrix was given as Spearman's
+  Copula copula{};                    ///< of the inputs, in their order
+};
 
 /// A Monte Carlo study as plain data: a scenario, what varies in it, what is measured, what is made
 /// of the measurements. docs/formats/study.md
@@ -25,11 +33,13 @@ struct Study {
   Design design = Design::random;
   OnError on_error = OnError::stop;
   std::vector<Variable> variables;  ///< [vary]
+  Correlation correlation;          ///< [correlation]
   MeasurePlan measure;              ///< [measure]
   SummaryPlan summary;              ///< [summary]
 
   TomlValue scenario;  ///< what the variables edit: with its include and the overrides in it
-  TomlValue document;  ///< [study], [set], [vary], [measure], [summary], with their overrides
+  TomlValue document;  ///< [study], [set], [vary], [correlation], [measure], [summary], with their
+                       ///< overrides
 
   std::string scenario_text;            ///< of the scenario, verbatim
   std::filesystem::path scenario_path;  ///< where it was read; files it names are relative to it

@@ -60,7 +60,7 @@ void make_room(const std::vector<Variable>& variables, const std::filesystem::pa
       const std::optional<TargetKey> found = target_key(key);
       if (!found || found->target >= list->size()) continue;
       TomlValue& target = (*list)[found->target];
-      const bool is_track = std::holds_alternative<TrackLaw>(variable.law);
+      const bool is_track = places(variable.law);
       if (found->key == "range" || found->key == "bearing_deg" || found->key == "depth")
         polar.insert(found->target);
       else if (found->key == "position" || is_track)

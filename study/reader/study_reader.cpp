@@ -10,6 +10,7 @@
 #include "io/text/toml_table.h"
 #include "study/measures/sampler.h"
 #include "study/plan/target_keys.h"
+#include "study/reader/correlation_reader.h"
 #include "study/reader/measure_reader.h"
 #include "study/reader/summary_reader.h"
 #include "study/reader/vary_reader.h"
@@ -18,8 +19,8 @@
 namespace asdic::detail::study {
 namespace {
 
-constexpr std::array<std::string_view, 5> study_tables{"study", "set", "vary", "measure",
-                                                       "summary"};
+constexpr std::array<std::string_view, 6> study_tables{"study",       "set",     "vary",
+                                                       "correlation", "measure", "summary"};
 
 bool is_study_table(std::string_view key) {
   return std::find(study_tables.begin(), study_tables.end(), key) != study_tables.end();
@@ -81,7 +82,8 @@ void read_scenario_tree(TomlTable head, const TomlValue& document, Study& study)
       if (!is_study_table(entry.key))
         throw InputError({.where = entry.value.origin + ": " + entry.key,
                           .got = "a key of the scenario beside study.scenario",
-                          .expected = "[study], [set], [vary], [measure] and [summary] alone"});
+                          .expected = "[study], [set], [vary], [correlation], [measure] and "
+                                      "[summary] alone"});
     study.scenario_text = read_text_file(study.scenario_path);
   } else {
     study.scenario_path = study.path;
@@ -111,6 +113,12 @@ Study read_study(const std::filesystem::path& path, std::span<const std::string>
   study.document = keep(std::move(study.document), true);
   TomlTable own(study.document);
   study.variables = read_vary(study.document, study);
+  for (const Variable& variable : study.variables)
+    for (const std::string& note : variable.notes)
+      study.warnings.push_back(variable.origin + ": vary." + variable.name + ": " + note);
+  if (own.has("correlation"))
+    study.correlation = read_correlation(own.table("correlation"),
+                                         *study.document.find("correlation"), study.variables);
   if (study.realisations == 0) study.realisations = grid_points(study.variables);
   make_room(study.variables, study.scenario_path, study.scenario);
   study.measure = read_measure(own.table("measure"), example_of(study));

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/text.h"
+#include "study/expression/names.h"
 
 namespace asdic::detail::study {
 namespace {
@@ -11,13 +12,6 @@ std::vector<std::string> names_of(const std::vector<Column>& columns) {
   std::vector<std::string> names;
   for (const Column& column : columns) names.push_back(column.name);
   return names;
-}
-
-std::string list_of(const std::vector<std::string>& names) {
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    text += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + in_quotes(names[i]);
-  return text;
 }
 
 /// A column's name, as it stands in an array or alone. \param where  its key, for messages

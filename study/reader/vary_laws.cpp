@@ -8,6 +8,9 @@
 #include "core/text.h"
 #include "io/scenario/scenario_reader.h"
 #include "io/text/csv_table.h"
+#include "study/reader/vary_climatology.h"
+#include "study/reader/vary_data.h"
+#include "study/reader/vary_given.h"
 #include "study/reader/vary_profiles.h"
 
 namespace asdic::detail::study {
@@ -211,11 +214,21 @@ TrackLaw read_track(TomlTable& table, const Variable& variable, const Study& stu
 
 }  // namespace
 
-AnyLaw read_law(TomlTable& table, const TomlValue& value, const Variable& variable,
-                const Study& study) {
+AnyLaw read_law(TomlTable& table, const TomlValue& value, Variable& variable, const Study& study,
+                const Others& others, bool in_branch) {
+  if (table.has("given")) return read_conditional(table, value, variable, study, others);
   const std::string name =
       table.choice("law", {"uniform", "normal", "log_normal", "triangular", "rayleigh", "weibull",
-                           "categorical", "list", "grid", "track", "profile_eof", "profile_casts"});
+                           "categorical", "list", "grid", "track", "profile_eof", "profile_casts",
+                           "table", "time_series", "climatology", "expression"});
+  if (variable.keys.empty() &&
+      (name == "track" || name == "profile_eof" || name == "profile_casts" ||
+       name == "climatology" || table.has("rows")))
+    throw table.fault("keys", "a key to write: this law draws no single number");
+  if (in_branch && name == "list")
+    throw table.fault("law",
+                      "\"categorical\" or \"grid\": a list goes by the number of the realisation, "
+                      "whichever of the laws it takes");
   if (name == "categorical" || name == "list" || name == "grid")
     return read_choice(name, table, value, variable, study.design);
   if (name == "profile_eof") return read_modes(table, study);
@@ -224,7 +237,15 @@ AnyLaw read_law(TomlTable& table, const TomlValue& value, const Variable& variab
     casts.cumulative = read_weights(table, casts.values.size());
     return casts;
   }
+  if (name == "climatology") {
+    ChoiceLaw months = read_climatology(table, value, variable, study);
+    months.cumulative = read_weights(table, months.values.size());
+    return months;
+  }
   if (name == "track") return read_track(table, variable, study);
+  if (name == "table") return read_table_law(table, value, variable, study);
+  if (name == "time_series") return read_time_series(table, value, variable, study);
+  if (name == "expression") return read_expression(table, variable, others);
   return read_number_law(name, table);
 }
 

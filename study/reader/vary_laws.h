@@ -1,13 +1,22 @@
 #pragma once
+#include <vector>
+
 #include "io/text/toml_table.h"
 #include "study/plan/study.h"
 #include "study/sampling/variable.h"
 
 namespace asdic::detail::study {
 
-/// The law of one entry of [vary]. \param table, value  the entry   \param variable  with its keys
-/// \param study  whose scenario gives what the law leaves open   \throws InputError
-[[nodiscard]] AnyLaw read_law(TomlTable& table, const TomlValue& value, const Variable& variable,
-                              const Study& study);
+/// Variables that are read already: a law may look at what they draw.
+using Others = std::vector<const Variable*>;
+
+/// The law of one entry of [vary]. \param table, value  the entry   \param variable  with its keys;
+/// its `given` is filled   \param study  whose scenario gives what the law leaves open
+/// \throws InputError
+[[nodiscard]] AnyLaw read_law(TomlTable& table, const TomlValue& value, Variable& variable,
+                              const Study& study, const Others& others, bool in_branch = false);
+
+/// Names of the columns that an entry's law looks at, known or not.
+[[nodiscard]] std::vector<std::string> looked_at(const TomlValue& entry);
 
 }  // namespace asdic::detail::study

@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <utility>
 
+#include "core/text.h"
 #include "core/unit_text.h"
 #include "io/scenario/catalogue.h"
+#include "io/text/toml_writer.h"
+#include "study/expression/names.h"
 #include "study/reader/vary_laws.h"
 #include "study/reader/vary_profiles.h"
 
@@ -56,15 +60,24 @@ NumberAtKey number_at(const std::string& key) {
       setting.type == SettingRecord::Type::number || setting.type == SettingRecord::Type::numbers
           ? std::string(setting.quantity.noun) + " "
           : "";
-  return {unit.empty() ? "1" : unit,
-          key + ": " + noun + setting.help.substr(0, setting.help.find(';'))};
+  return {.unit = unit.empty() ? "1" : unit,
+          .meaning = key + ": " + noun + setting.help.substr(0, setting.help.find(';')),
+          .whole = setting.type == SettingRecord::Type::whole_number};
 }
 
 /// These laws know the key that they write: profile = { law = "profile_eof", … }
 bool is_profile_law(const TomlValue& entry) {
+  if (const TomlValue* laws = entry.find("laws"); laws != nullptr && entry.find("given")) {
+    if (const auto* array = std::get_if<TomlValue::Array>(&laws->data))
+      return std::any_of(array->begin(), array->end(), is_profile_law);
+    return laws->table() != nullptr &&
+           std::any_of(laws->table()->begin(), laws->table()->end(),
+                       [](const TomlEntry& branch) { return is_profile_law(branch.value); });
+  }
   const TomlValue* law = entry.find("law");
   const auto* name = law == nullptr ? nullptr : std::get_if<std::string>(&law->data);
-  return name != nullptr && (*name == "profile_eof" || *name == "profile_casts");
+  return name != nullptr &&
+         (*name == "profile_eof" || *name == "profile_casts" || *name == "climatology");
 }
 
 std::vector<std::string> read_keys(const TomlEntry& entry, TomlTable& table) {
@@ -80,34 +93,47 @@ std::vector<std::string> read_keys(const TomlEntry& entry, TomlTable& table) {
         throw table.fault("keys", "an array of keys, each in quotes");
       result.push_back(*key);
     }
-  if (result.empty()) throw table.fault("keys", "an array of keys, each in quotes");
+  if (!std::holds_alternative<TomlValue::Array>(keys->data))
+    throw table.fault("keys", "an array of keys, each in quotes");
   return result;
 }
 
-Variable read_variable(const TomlEntry& entry, const Study& study) {
+/// An entry of [vary] on its way to a variable.
+struct Pending {
+  const TomlEntry* entry;
+  TomlTable table;
+  Variable variable{};
+  bool done = false;
+};
+
+/// All but its law.
+Pending begin_variable(const TomlEntry& entry) {
   const bool quoted = entry.key.find('.') != std::string::npos;
-  TomlTable table(entry.value, "vary." + (quoted ? '"' + entry.key + '"' : entry.key));
-  Variable variable{.keys = read_keys(entry, table), .origin = entry.value.origin};
-  const bool group = variable.keys.front() != entry.key;
+  Pending pending{
+      .entry = &entry,
+      .table = TomlTable(entry.value, "vary." + (quoted ? '"' + entry.key + '"' : entry.key))};
+  TomlTable& table = pending.table;
+  Variable& variable = pending.variable;
+  variable = {.keys = read_keys(entry, table), .origin = entry.value.origin};
+  const bool group = variable.keys.empty() || variable.keys.front() != entry.key;
   variable.name = column_name(table.text("name", group ? entry.key : short_name(entry.key)));
   if (variable.name.empty()) throw table.fault("name", "a name with letters or digits");
-  for (const std::string& key : variable.keys) {
-    variable.numbers.push_back(number_at(key));
-    variable.numbers.back().unit = table.text("unit", variable.numbers.back().unit);
-  }
-  variable.law = read_law(table, entry.value, variable, study);
-  table.finish();
-  return variable;
+  for (const std::string& key : variable.keys) variable.numbers.push_back(number_at(key));
+  if (variable.keys.empty())  // drawn for others alone
+    variable.numbers.push_back({.meaning = entry.key + ": writes no key, others look at it"});
+  for (NumberAtKey& number : variable.numbers) number.unit = table.text("unit", number.unit);
+  return pending;
 }
 
 /// Two variables of one name take the whole of their keys as names.
-void distinguish(std::vector<Variable>& variables) {
+void distinguish(std::vector<Variable*>& variables) {
   for (std::size_t i = 0; i < variables.size(); ++i) {
-    const std::string name = variables[i].name;
-    const auto alike = [&](const Variable& v) { return v.name == name; };
+    const std::string name = variables[i]->name;
+    const auto alike = [&](const Variable* v) { return v->name == name; };
     if (std::count_if(variables.begin(), variables.end(), alike) < 2) continue;
-    for (Variable& variable : variables)
-      if (alike(variable)) variable.name = column_name(variable.keys.front());
+    for (Variable* variable : variables)
+      if (alike(variable) && !variable->keys.empty())
+        variable->name = column_name(variable->keys.front());
   }
 }
 
@@ -127,6 +153,65 @@ void check_columns(const std::vector<Variable>& variables) {
   }
 }
 
+std::vector<std::string> column_names(const Others& others) {
+  std::vector<std::string> names;
+  for (const Variable* other : others)
+    for (const InputColumn& column : input_columns(*other)) names.push_back(column.name);
+  return names;
+}
+
+/// Whether a column will be one of an input that is not read yet: its name, or one that begins so.
+bool may_make(const Variable& variable, const std::string& column) {
+  return column == variable.name || column.starts_with(variable.name + '_');
+}
+
+/// Why none of those that are left can be drawn: a name that nobody has, or a circle.
+InputError stuck(const std::vector<Pending>& pending, const Others& others) {
+  std::vector<std::string> names = column_names(others);
+  for (const Pending& one : pending)
+    if (!one.done) names.push_back(one.variable.name);
+  const auto missing = [&](const Pending& one) {
+    const std::vector<std::string> there = column_names(others);
+    for (const std::string& name : looked_at(one.entry->value))
+      if (std::find(there.begin(), there.end(), name) == there.end()) return name;
+    return std::string();
+  };
+  const auto maker = [&](const std::string& name) {
+    return std::find_if(pending.begin(), pending.end(), [&](const Pending& one) {
+      return !one.done && may_make(one.variable, name);
+    });
+  };
+  for (const Pending& one : pending) {
+    if (one.done) continue;
+    const std::string name = missing(one);
+    if (maker(name) != pending.end()) continue;
+    std::erase(names, one.variable.name);
+    const std::string nearest = nearest_name(name, names);
+    return InputError(
+        {.where = one.variable.origin + ": vary." + one.variable.name,
+         .got = "the name " + in_quotes(name),
+         .expected =
+             names.empty()
+                 ? "the column of another input; there is none"
+                 : "the column of another input, " + list_of(names) +
+                       (nearest.empty() ? "" : " (did you mean " + in_quotes(nearest) + "?)")});
+  }
+  // Each waits for another: whoever is met twice stands in a circle.
+  std::vector<const Pending*> way;
+  const Pending* at =
+      &*std::find_if(pending.begin(), pending.end(), [](const Pending& one) { return !one.done; });
+  while (std::find(way.begin(), way.end(), at) == way.end()) {
+    way.push_back(at);
+    at = &*maker(missing(*at));
+  }
+  std::string circle;
+  for (auto it = std::find(way.begin(), way.end(), at); it != way.end(); ++it)
+    circle += in_quotes((*it)->variable.name) + " looks at ";
+  return InputError({.where = at->variable.origin + ": vary." + at->variable.name,
+                     .got = "a circle: " + circle + in_quotes(at->variable.name),
+                     .expected = "inputs that look at others in one direction only"});
+}
+
 }  // namespace
 
 std::vector<Variable> read_vary(const TomlValue& document, const Study& study) {
@@ -138,9 +223,30 @@ std::vector<Variable> read_vary(const TomlValue& document, const Study& study) {
   std::stable_sort(entries.begin(), entries.end(), [](const TomlEntry* a, const TomlEntry* b) {
     return line_of(a->value.origin) < line_of(b->value.origin);
   });
+  std::vector<Pending> pending;
+  std::vector<Variable*> heads;
+  for (const TomlEntry* entry : entries) pending.push_back(begin_variable(*entry));
+  for (Pending& one : pending) heads.push_back(&one.variable);
+  distinguish(heads);
+  // A law can be read once those are that it looks at; else in the order of the file.
+  Others others;
+  for (bool more = true; std::exchange(more, false);)
+    for (Pending& one : pending) {
+      const std::vector<std::string> there = column_names(others);
+      const std::vector<std::string> names = looked_at(one.entry->value);
+      const auto known = [&](const std::string& name) {
+        return std::find(there.begin(), there.end(), name) != there.end();
+      };
+      if (one.done || !std::all_of(names.begin(), names.end(), known)) continue;
+      one.variable.law = read_law(one.table, one.entry->value, one.variable, study, others);
+      one.table.finish();
+      one.variable.text = inline_toml(one.entry->value);
+      others.push_back(&one.variable);
+      one.done = more = true;
+    }
+  if (others.size() < pending.size()) throw InputError(stuck(pending, others));
   std::vector<Variable> variables;
-  for (const TomlEntry* entry : entries) variables.push_back(read_variable(*entry, study));
-  distinguish(variables);
+  for (Pending& one : pending) variables.push_back(std::move(one.variable));
   check_columns(variables);
   return variables;
 }

@@ -162,7 +162,7 @@ std::string joined(const std::vector<std::string>& texts) {
 
 void StudyFileWriter::write_root() {
   const Fingerprint& fingerprint = results_.fingerprint;
-  write_filetype(file_, "asdic study", "1.3");
+  write_filetype(file_, "asdic study", "1.4");
   file_.set_attribute("", "title", fingerprint.title);
   file_.set_attribute("", "identity", fingerprint.identity);
   file_.set_attribute("", "seed", std::to_string(fingerprint.seed));
@@ -192,6 +192,45 @@ void StudyFileWriter::write_summary() {
                        [&](const std::string& dataset, const std::vector<double>& values) {
                          noted(dataset, values);
                        });
+}
+
+/// laws/COLUMN, and laws/COLUMN/caseK of one that looks at another input.
+void StudyFileWriter::write_laws() {
+  file_.make_group("laws");
+  std::string of;
+  std::size_t cases = 0;
+  for (const LawTable& table : results_.summary.laws) {
+    if (table.given.empty() || table.column != of) cases = 0;
+    of = table.column;
+    std::string group = "laws/" + table.column;
+    if (!table.given.empty()) group += "/case" + std::to_string(cases++);
+    file_.make_group(group);
+    file_.set_attribute(group, "law", table.law);
+    file_.set_attribute(group, "how", table.how);
+    if (!table.given.empty()) file_.set_attribute(group, "given", table.given);
+    if (table.value.empty()) continue;
+    const Column column{
+        .name = table.column, .unit = table.unit, .meaning = table.meaning, .labels = table.labels};
+    const std::string value = group + "/value";
+    file_.write<double>(value, table.value, {table.value.size()});
+    describe_column(file_, value, column);
+    file_.make_scale(value, "value");
+    noted(value, table.value);
+    const auto write = [&](const char* name, const std::vector<double>& values,
+                           const char* long_name, const std::string& unit) {
+      const std::string path = group + '/' + name;
+      file_.write<double>(path, values, {values.size()});
+      describe(file_, path, long_name, unit);
+      file_.attach_scales(path, {value});
+      noted(path, values);
+    };
+    const std::string unit = table.unit.substr(0, table.unit.find(" re "));
+    if (table.discrete)
+      write("probability", table.share, "probability of the value", "1");
+    else
+      write("density", table.share, "probability density", unit == "1" ? "1" : '(' + unit + ")-1");
+    write("cumulative", table.cumulative, "probability of the value or less", "1");
+  }
 }
 
 void StudyFileWriter::write_manifest() {

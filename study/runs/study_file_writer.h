@@ -24,6 +24,7 @@ class StudyFileWriter {
     write_table();
     write_series(series);
     write_summary();
+    write_laws();
     write_manifest();
     write_run();
     file_.close();
@@ -34,6 +35,7 @@ class StudyFileWriter {
   void write_table();
   void write_series(const SeriesSource& series);
   void write_summary();
+  void write_laws();
   void write_manifest();
   void write_run();
   void write_pressure(const SeriesSource& series, const Shape& row);

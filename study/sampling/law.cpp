@@ -75,6 +75,34 @@ double quantile_of(const Weibull& law, const Tails& t) noexcept {
   return law.scale * std::pow(h, 1.0 / law.shape);
 }
 
+double density_of(const Uniform& law, double x) noexcept {
+  return x < law.low || x > law.high ? 0.0 : 1.0 / (law.high - law.low);
+}
+
+double normal_density(double z) noexcept { return std::exp(-0.5 * z * z) / std::sqrt(2.0 * pi); }
+
+double density_of(const Normal& law, double x) noexcept {
+  return normal_density((x - law.mean) / law.deviation) / law.deviation;
+}
+
+double density_of(const LogNormal& law, double x) noexcept {
+  if (!(x > 0.0)) return 0.0;
+  return normal_density(std::log(x / law.median) / law.log_deviation) / (law.log_deviation * x);
+}
+
+double density_of(const Triangular& law, double x) noexcept {
+  if (x < law.low || x > law.high) return 0.0;
+  const double peak = 2.0 / (law.high - law.low);
+  if (x < law.mode) return peak * (x - law.low) / (law.mode - law.low);
+  return x == law.mode ? peak : peak * (law.high - x) / (law.high - law.mode);
+}
+
+double density_of(const Weibull& law, double x) noexcept {
+  if (x < 0.0) return 0.0;
+  const double r = x / law.scale;
+  return law.shape / law.scale * std::pow(r, law.shape - 1.0) * std::exp(-std::pow(r, law.shape));
+}
+
 // Where each law ends.
 
 Span support(const Uniform& law) { return {law.low, law.high}; }
@@ -97,6 +125,10 @@ Tails tails(const ContinuousLaw& law, double x) noexcept {
 
 double quantile(const ContinuousLaw& law, const Tails& t) noexcept {
   return std::visit([&](const auto& l) { return quantile_of(l, t); }, law);
+}
+
+double density(const ContinuousLaw& law, double x) noexcept {
+  return std::visit([&](const auto& l) { return density_of(l, x); }, law);
 }
 
 double normal_upper_quantile(double p) noexcept {
@@ -132,6 +164,10 @@ double CutLaw::quantile(double u) const noexcept {
   const Tails t{std::lerp(at_low_.lower, at_high_.lower, u),
                 std::lerp(at_low_.upper, at_high_.upper, u)};
   return std::clamp(study::quantile(law_, t), low_, high_);
+}
+
+double CutLaw::density(double x) const noexcept {
+  return x < low_ || x > high_ ? 0.0 : study::density(law_, x) / share();
 }
 
 double CutLaw::distribution(double x) const noexcept {

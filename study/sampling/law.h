@@ -45,6 +45,9 @@ struct Tails {
 /// The x of given tails: by the smaller of the two. \param t  lower + upper = 1
 [[nodiscard]] double quantile(const ContinuousLaw& law, const Tails& t) noexcept;
 
+/// dP(X ≤ x)/dx; 0 beyond the law's ends.
+[[nodiscard]] double density(const ContinuousLaw& law, double x) noexcept;
+
 /// A law cut off at both ends: X given that low ≤ X ≤ high.
 class CutLaw {
  public:
@@ -55,6 +58,7 @@ class CutLaw {
   /// The value below which a share u of the draws lies. \param u  in (0, 1)
   [[nodiscard]] double quantile(double u) const noexcept;
   [[nodiscard]] double distribution(double x) const noexcept;  ///< P(X ≤ x)
+  [[nodiscard]] double density(double x) const noexcept;       ///< dP(X ≤ x)/dx
   /// How much of the law lies within the limits; 0: nothing, and no value can be drawn.
   [[nodiscard]] double share() const noexcept;
   [[nodiscard]] const ContinuousLaw& law() const noexcept { return law_; }

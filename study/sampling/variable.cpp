@@ -1,6 +1,12 @@
 #include "study/sampling/variable.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "core/error.h"
+#include "core/text.h"
 
 namespace asdic::detail::study {
 namespace {
@@ -23,6 +29,77 @@ std::size_t dimensions(const NumberLaw&) { return 1; }
 std::size_t dimensions(const ChoiceLaw& law) { return law.kind == ChoiceLaw::Kind::weighted; }
 std::size_t dimensions(const TrackLaw& law) { return law.speed ? 5 : 3; }
 std::size_t dimensions(const ModesLaw& law) { return law.modes.size(); }
+std::size_t dimensions(const TableLaw&) { return 1; }
+std::size_t dimensions(const TimeSeriesLaw&) { return 1; }
+std::size_t dimensions(const ExpressionLaw&) { return 0; }
+/// Those of the branch with the most: one is drawn, out of the same coordinates.
+std::size_t dimensions(const ConditionalLaw& law) {
+  std::size_t most = 0;
+  for (const Branch& branch : law.branches)
+    most = std::max(most, std::visit([](const auto& l) { return dimensions(l); }, branch.law));
+  return most;
+}
+
+/// How many different ways there are to draw a law's values out of a list; 0: it has no list.
+std::size_t ways(const AnyLaw& law) {
+  if (const auto* choice = std::get_if<ChoiceLaw>(&law)) return choice->values.size();
+  const auto* conditional = std::get_if<ConditionalLaw>(&law);
+  if (conditional == nullptr) return 0;
+  std::size_t sum = 0;
+  for (const Branch& branch : conditional->branches)
+    sum += std::max<std::size_t>(1, ways(branch.law));
+  return sum;
+}
+
+/// One of the ways of a conditional law: which branch, and which of that one's ways.
+struct Way {
+  std::size_t branch = 0, choice = 0;
+};
+Way way_of(const ConditionalLaw& law, std::size_t choice) {
+  Way way{.choice = choice};
+  for (; way.branch + 1 < law.branches.size(); ++way.branch) {
+    const std::size_t here = std::max<std::size_t>(1, ways(law.branches[way.branch].law));
+    if (way.choice < here) break;
+    way.choice -= here;
+  }
+  return way;
+}
+
+std::size_t branch_at(const ConditionalLaw& law, double x) {
+  if (!law.edges.empty() || law.values.empty())
+    return static_cast<std::size_t>(std::upper_bound(law.edges.begin(), law.edges.end(), x) -
+                                    law.edges.begin());
+  const auto it = std::find(law.values.begin(), law.values.end(), x);
+  return it == law.values.end() ? 0
+                                : law.branch_of[static_cast<std::size_t>(it - law.values.begin())];
+}
+
+std::size_t choose(const ChoiceLaw& law, std::span<const double> u, std::span<const double>) {
+  const auto& cumulative = law.cumulative;
+  const auto it = std::upper_bound(cumulative.begin(), cumulative.end() - 1, u[0]);
+  return static_cast<std::size_t>(it - cumulative.begin());
+}
+
+std::size_t choose(const TableLaw& law, std::span<const double> u) {
+  const std::size_t n = law.data->rows();
+  if (law.cumulative.empty())
+    return std::min(n - 1, static_cast<std::size_t>(u[0] * static_cast<double>(n)));
+  const auto it = std::upper_bound(law.cumulative.begin(), law.cumulative.end() - 1, u[0]);
+  return static_cast<std::size_t>(it - law.cumulative.begin());
+}
+
+std::size_t choose(const ConditionalLaw& law, std::span<const double> u,
+                   std::span<const double> given) {
+  const std::size_t branch = branch_at(law, given[law.given]);
+  std::size_t before = 0;
+  for (std::size_t b = 0; b < branch; ++b)
+    before += std::max<std::size_t>(1, ways(law.branches[b].law));
+  const AnyLaw& own = law.branches[branch].law;
+  if (const auto* choice = std::get_if<ChoiceLaw>(&own)) return before + choose(*choice, u, given);
+  if (const auto* inner = std::get_if<ConditionalLaw>(&own))
+    return before + choose(*inner, u, given);
+  return before;
+}
 
 std::vector<InputColumn> columns(const NumberLaw& law, const Variable& v) {
   return {{.name = v.name,
@@ -75,19 +152,65 @@ std::vector<InputColumn> columns(const ModesLaw& law, const Variable& v) {
   return made;
 }
 
-void values_of(const NumberLaw& law, std::span<const double> u, std::size_t,
-               std::vector<double>& values) {
+/// Columns of data: those of keys have their units.
+void append_columns(const DataRows& data, const Variable& v, std::vector<InputColumn>& made) {
+  for (std::size_t c = 0; c < data.columns.size(); ++c) {
+    const auto [least, greatest] =
+        std::minmax_element(data.columns[c].begin(), data.columns[c].end());
+    const bool keyed = c < v.keys.size();
+    made.push_back({.name = data.columns.size() == 1 ? v.name : v.name + '_' + data.names[c],
+                    .unit = keyed ? number_at(v, c).unit : "1",
+                    .meaning = keyed ? number_at(v, c).meaning : data.names[c] + " of the data",
+                    .ends = {*least, *greatest}});
+  }
+}
+
+std::vector<InputColumn> columns(const TableLaw& law, const Variable& v) {
+  std::vector<InputColumn> made;
+  append_columns(*law.data, v, made);
+  return made;
+}
+
+std::vector<InputColumn> columns(const TimeSeriesLaw& law, const Variable& v) {
+  std::vector<InputColumn> made{{.name = v.name + "_time",
+                                 .unit = law.unit,
+                                 .meaning = "time in the series",
+                                 .ends = law.span}};
+  if (!law.track) {
+    append_columns(*law.data, v, made);
+    return made;
+  }
+  const std::string& key = v.keys.front();
+  const auto add = [&](const char* name, const char* unit, const char* meaning) {
+    made.push_back({.name = v.name + '_' + name, .unit = unit, .meaning = key + ": " + meaning});
+  };
+  add("east", "m", "east of the map's origin");
+  add("north", "m", "north of the map's origin");
+  add("depth", "m", "depth");
+  add("speed", "m/s", "horizontal speed");
+  add("course_deg", "degrees", "course, true");
+  return made;
+}
+
+std::vector<InputColumn> columns(const ExpressionLaw&, const Variable& v) {
+  return {{.name = v.name, .unit = number_at(v, 0).unit, .meaning = number_at(v, 0).meaning}};
+}
+
+std::vector<InputColumn> columns(const ConditionalLaw& law, const Variable&) { return law.columns; }
+
+void values_of(const NumberLaw& law, std::span<const double> u, std::span<const double>,
+               std::size_t, std::vector<double>& values) {
   values.push_back(law.law.quantile(u[0]));
 }
 
-void values_of(const ChoiceLaw& law, std::span<const double>, std::size_t choice,
-               std::vector<double>& values) {
+void values_of(const ChoiceLaw& law, std::span<const double>, std::span<const double>,
+               std::size_t choice, std::vector<double>& values) {
   for (std::size_t k = 0; k < law.labels.size(); ++k)
     values.push_back(law.labels[k].empty() ? number_of(law.values[choice][k]).value_or(0.0)
                                            : static_cast<double>(choice));
 }
 
-void values_of(const TrackLaw& law, std::span<const double> u, std::size_t,
+void values_of(const TrackLaw& law, std::span<const double> u, std::span<const double>, std::size_t,
                std::vector<double>& values) {
   const Span squared{law.range.low * law.range.low, law.range.high * law.range.high};
   values.push_back(law.even_in_area ? std::sqrt(squared.at(u[0])) : law.range.at(u[0]));
@@ -98,10 +221,84 @@ void values_of(const TrackLaw& law, std::span<const double> u, std::size_t,
   values.push_back(degrees(law.course.at(u[4])));
 }
 
-void values_of(const ModesLaw& law, std::span<const double> u, std::size_t,
+void values_of(const ModesLaw& law, std::span<const double> u, std::span<const double>, std::size_t,
                std::vector<double>& values) {
   for (std::size_t k = 0; k < law.amplitudes.size(); ++k)
     values.push_back(law.amplitudes[k].quantile(u[k]));
+}
+
+void values_of(const TableLaw& law, std::span<const double> u, std::span<const double>, std::size_t,
+               std::vector<double>& values) {
+  const std::size_t row = choose(law, u);
+  for (const std::vector<double>& column : law.data->columns) values.push_back(column[row]);
+}
+
+/// Between which rows a time lies, and how far towards the later one.
+struct Between {
+  std::size_t row = 0;
+  double share = 0.0;
+};
+Between between(const TimeSeriesLaw& law, double time) {
+  const auto after = std::upper_bound(law.time.begin(), law.time.end(), time);
+  const auto row =
+      static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, after - law.time.begin() - 1));
+  if (row + 1 >= law.time.size()) return {row, 0.0};
+  return {row, (time - law.time[row]) / (law.time[row + 1] - law.time[row])};
+}
+
+/// Velocity of a track at a time: of the piece that it lies in, at the last row of that before it.
+Vec3 velocity_at(const TimeSeriesLaw& law, double time) {
+  const std::size_t row = std::min(between(law, time).row, law.time.size() - 2);
+  const double seconds = (law.time[row + 1] - law.time[row]) * law.seconds;
+  Vec3 moves = Vec3::Zero();
+  for (int c = 0; c < 3; ++c) {
+    const std::vector<double>& x = law.data->columns[static_cast<std::size_t>(c)];
+    moves[c] = (x[row + 1] - x[row]) / seconds;
+  }
+  return moves;
+}
+
+void values_of(const TimeSeriesLaw& law, std::span<const double> u, std::span<const double>,
+               std::size_t, std::vector<double>& values) {
+  const double time = law.span.at(u[0]);
+  const auto [row, share] = between(law, time);
+  values.push_back(time);
+  for (std::size_t c = 0; c < law.data->columns.size(); ++c) {
+    const std::vector<double>& x = law.data->columns[c];
+    if (law.by_row || row + 1 >= x.size()) {
+      values.push_back(x[row]);
+      continue;
+    }
+    double step = x[row + 1] - x[row];
+    const bool turns = law.angles[c] && std::abs(step) > 180.0;
+    if (turns) step -= std::copysign(360.0, step);
+    const double there = x[row] + share * step;
+    values.push_back(!turns ? there : there < 0.0 ? there + 360.0 : std::fmod(there, 360.0));
+  }
+  if (!law.track) return;
+  const Vec3 moves = velocity_at(law, time);
+  values.push_back(moves.head<2>().norm());
+  const double course = degrees(std::atan2(moves.x(), moves.y()));
+  values.push_back(course < 0.0 ? course + 360.0 : course);
+}
+
+void values_of(const ExpressionLaw& law, std::span<const double>, std::span<const double> given,
+               std::size_t, std::vector<double>& values) {
+  std::vector<double> named;
+  for (const std::size_t name : law.names) named.push_back(given[name]);
+  values.push_back(law.expression.at(named));
+}
+
+void values_of(const ConditionalLaw& law, std::span<const double> u, std::span<const double> given,
+               std::size_t choice, std::vector<double>& values) {
+  const Way way = way_of(law, choice);
+  const Branch& branch = law.branches[way.branch];
+  const std::size_t first = values.size();
+  std::visit([&](const auto& own) { values_of(own, u, given, way.choice, values); }, branch.law);
+  for (std::size_t c = 0; c < branch.label_of.size(); ++c)
+    if (!branch.label_of[c].empty())
+      values[first + c] =
+          static_cast<double>(branch.label_of[c][static_cast<std::size_t>(values[first + c])]);
 }
 
 void write(const NumberLaw&, const Variable& v, std::span<const double> values, std::size_t,
@@ -145,6 +342,50 @@ void write(const ModesLaw& law, const Variable& v, std::span<const double> value
     value_at(scenario, key, v.origin) = {.data = table, .origin = v.origin};
 }
 
+/// A number at a key; a whole one where whole ones alone may stand.
+void write_number(const Variable& v, std::size_t key, double x, TomlValue& scenario) {
+  TomlValue value{.data = x, .origin = v.origin};
+  if (number_at(v, key).whole && x == std::round(x) && std::abs(x) < 0x1p53)
+    value.data = static_cast<std::int64_t>(x);
+  value_at(scenario, v.keys[key], v.origin) = std::move(value);
+}
+
+void write(const TableLaw&, const Variable& v, std::span<const double> values, std::size_t,
+           TomlValue& scenario) {
+  for (std::size_t k = 0; k < v.keys.size(); ++k) write_number(v, k, values[k], scenario);
+}
+
+void write(const TimeSeriesLaw& law, const Variable& v, std::span<const double> values, std::size_t,
+           TomlValue& scenario) {
+  if (!law.track) {
+    for (std::size_t k = 0; k < v.keys.size(); ++k) write_number(v, k, values[k + 1], scenario);
+    return;
+  }
+  const Vec3 moves = velocity_at(law, values[0]);
+  const std::array<double, 3> velocity{moves.x(), moves.y(), moves.z()};
+  for (const std::string& key : v.keys) {
+    value_at(scenario, key + ".position", v.origin) = array_of(values.subspan(1, 3), v.origin);
+    value_at(scenario, key + ".velocity", v.origin) = array_of(velocity, v.origin);
+  }
+}
+
+void write(const ExpressionLaw& law, const Variable& v, std::span<const double> values, std::size_t,
+           TomlValue& scenario) {
+  const double x = values[0];
+  if (!std::isfinite(x))
+    throw InputError({.where = v.origin + ": vary." + v.name,
+                      .got = to_text(x) + " of " + in_quotes(law.expression.text()),
+                      .expected = "a finite number"});
+  for (std::size_t k = 0; k < v.keys.size(); ++k) write_number(v, k, x, scenario);
+}
+
+void write(const ConditionalLaw& law, const Variable& v, std::span<const double> values,
+           std::size_t choice, TomlValue& scenario) {
+  const Way way = way_of(law, choice);
+  std::visit([&](const auto& own) { write(own, v, values, way.choice, scenario); },
+             law.branches[way.branch].law);
+}
+
 }  // namespace
 
 std::optional<double> number_of(const TomlValue& value) {
@@ -175,21 +416,68 @@ std::size_t choices_of(const Variable& variable) {
   return choice == nullptr ? 0 : choice->values.size();
 }
 
-std::size_t chosen(const Variable& variable, double u) {
-  const auto& cumulative = std::get<ChoiceLaw>(variable.law).cumulative;
-  const auto it = std::upper_bound(cumulative.begin(), cumulative.end() - 1, u);
-  return static_cast<std::size_t>(it - cumulative.begin());
+bool is_continuous(const AnyLaw& law) {
+  if (const auto* conditional = std::get_if<ConditionalLaw>(&law))
+    return std::all_of(conditional->branches.begin(), conditional->branches.end(),
+                       [](const Branch& branch) { return is_continuous(branch.law); });
+  return std::holds_alternative<NumberLaw>(law);
 }
 
-void append_values(const Variable& variable, std::span<const double> u, std::size_t choice,
-                   std::vector<double>& values) {
-  std::visit([&](const auto& law) { values_of(law, u, choice, values); }, variable.law);
+bool places(const AnyLaw& law) {
+  if (const auto* conditional = std::get_if<ConditionalLaw>(&law))
+    return std::any_of(conditional->branches.begin(), conditional->branches.end(),
+                       [](const Branch& branch) { return places(branch.law); });
+  const auto* series = std::get_if<TimeSeriesLaw>(&law);
+  return std::holds_alternative<TrackLaw>(law) || (series != nullptr && series->track);
+}
+
+std::vector<double> values_of_column(const Variable& variable, std::size_t column) {
+  const std::vector<std::string>& labels = input_columns(variable).at(column).labels;
+  std::vector<double> all;
+  for (std::size_t i = 0; i < labels.size(); ++i) all.push_back(static_cast<double>(i));
+  if (!all.empty()) return all;
+  const auto* choice = std::get_if<ChoiceLaw>(&variable.law);
+  for (std::size_t i = 0; choice != nullptr && i < choice->values.size(); ++i)
+    if (const double x = number_of(choice->values[i][column]).value_or(0.0);
+        std::find(all.begin(), all.end(), x) == all.end())
+      all.push_back(x);
+  return all;
+}
+
+std::size_t chosen(const Variable& variable, std::span<const double> u,
+                   std::span<const double> given) {
+  if (const auto* choice = std::get_if<ChoiceLaw>(&variable.law)) return choose(*choice, u, given);
+  const auto* conditional = std::get_if<ConditionalLaw>(&variable.law);
+  return conditional == nullptr ? 0 : choose(*conditional, u, given);
+}
+
+void append_values(const Variable& variable, std::span<const double> u,
+                   std::span<const double> given, std::size_t choice, std::vector<double>& values) {
+  std::visit([&](const auto& law) { values_of(law, u, given, choice, values); }, variable.law);
 }
 
 void apply(const Variable& variable, std::span<const double> values, std::size_t choice,
            TomlValue& scenario) {
   std::visit([&](const auto& law) { write(law, variable, values, choice, scenario); },
              variable.law);
+}
+
+std::vector<std::size_t> drawing_order(std::span<const Variable> variables) {
+  std::vector<std::size_t> order;
+  std::vector<std::string> there;  // columns
+  std::vector<bool> drawn(variables.size());
+  for (bool more = true; std::exchange(more, false);)
+    for (std::size_t v = 0; v < variables.size() && !more; ++v) {
+      const auto known = [&](const std::string& name) {
+        return std::find(there.begin(), there.end(), name) != there.end();
+      };
+      const Variable& variable = variables[v];
+      if (drawn[v] || !std::all_of(variable.given.begin(), variable.given.end(), known)) continue;
+      for (const InputColumn& column : input_columns(variable)) there.push_back(column.name);
+      order.push_back(v);
+      drawn[v] = more = true;
+    }
+  return order;
 }
 
 }  // namespace asdic::detail::study

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -9,6 +10,7 @@
 
 #include "core/units.h"
 #include "io/text/toml_value.h"
+#include "study/expression/expression.h"
 #include "study/sampling/law.h"
 
 namespace asdic::detail::study {
@@ -51,11 +53,73 @@ struct ModesLaw {
   std::string interpolation;               ///< of the table that is made
 };
 
-using AnyLaw = std::variant<NumberLaw, ChoiceLaw, TrackLaw, ModesLaw>;
+/// A formula of what others draw, the same at all keys.
+struct ExpressionLaw {
+  Expression expression;
+  std::vector<std::size_t> names{};  ///< [expression.names()] which of Variable::given
+};
+
+/// Rows of measured numbers; a few of their columns. Copies of laws share them.
+struct DataRows {
+  std::vector<std::string> names;            ///< [columns] what they are called behind the input's
+  std::vector<std::vector<double>> columns;  ///< [columns][rows]
+  [[nodiscard]] std::size_t rows() const { return columns.empty() ? 0 : columns[0].size(); }
+};
+
+/// A row of a table, drawn whole. Its first columns go to the keys, one each; the others are drawn
+/// for whoever looks at them.
+struct TableLaw {
+  std::shared_ptr<const DataRows> data;
+  std::vector<double> cumulative;  ///< [rows] of the weights, the last one 1; empty: all alike
+};
+
+/// What a series of measurements was at a time drawn evenly. Columns as of TableLaw, or those of a
+/// track (east, north, depth), which writes `position` and `velocity` below its keys.
+struct TimeSeriesLaw {
+  std::shared_ptr<const DataRows> data;
+  std::vector<double> time;  ///< [rows] rising
+  std::vector<bool> angles;  ///< [columns] degrees, which are turned by the shorter way
+  Span span;                 ///< from which the time is drawn
+  bool by_row = false;       ///< each row holds until the next; else straight between them
+  bool track = false;
+  std::string unit;      ///< of the time, "h"
+  double seconds = 1.0;  ///< of one unit of it
+};
+
+struct Branch;
+
+/// What a column of an input is called and counted in.
+struct InputColumn {
+  std::string name, unit, meaning;
+  std::vector<std::string> labels;
+  /// Between which its values are drawn; infinite where the law has no end.
+  Span ends{-infinity, infinity};
+};
+
+/// A law for each value, or interval of values, of what another input draws.
+struct ConditionalLaw {
+  std::size_t given = 0;         ///< which of Variable::given decides
+  std::vector<double> edges{};   ///< branch i is from edges[i − 1] up to below edges[i] …
+  std::vector<double> values{};  ///< … or, without edges, those that it can have
+  std::vector<std::size_t> branch_of{};  ///< [values] which branch each leads to
+  std::vector<Branch> branches{};
+  std::vector<InputColumn> columns{};  ///< of all branches
+};
+
+using AnyLaw = std::variant<NumberLaw, ChoiceLaw, TrackLaw, ModesLaw, TableLaw, TimeSeriesLaw,
+                            ExpressionLaw, ConditionalLaw>;
+
+struct Branch {
+  std::string name;  ///< "winter", "from 5 to 10"
+  AnyLaw law;
+  /// [columns][labels of its own] which label of the whole each is; empty for numbers
+  std::vector<std::vector<std::size_t>> label_of{};
+};
 
 /// What the number at a key is: "depth of the sources" [m].
 struct NumberAtKey {
   std::string unit = "1", meaning;
+  bool whole = false;  ///< whole numbers alone may stand there
 };
 
 /// One input that varies from realisation to realisation: a key of the scenario (or several that
@@ -66,34 +130,44 @@ struct Variable {
   std::vector<NumberAtKey> numbers = {};  ///< [keys]; none: nothing is known of them
   std::string origin;                     ///< where it was written, "study.toml:12"
   AnyLaw law;
+  std::vector<std::string> given = {};  ///< columns of others that its law looks at
+  std::string text = {};                ///< the law, as the study file has it
+  std::string digest = {};              ///< of files that its law was read from, for the identity
+  std::vector<std::string> notes = {};  ///< what the user should know of them
 };
 
 /// A whole or real number as such; none for anything else.
 [[nodiscard]] std::optional<double> number_of(const TomlValue& value);
 
-/// What a column of an input is called and counted in.
-struct InputColumn {
-  std::string name, unit, meaning;
-  std::vector<std::string> labels;
-  /// Between which its values are drawn; infinite where the law has no end.
-  Span ends{-infinity, infinity};
-};
 [[nodiscard]] std::vector<InputColumn> input_columns(const Variable& variable);
 /// Between which the values of a column are drawn; infinite where it is none of an input.
 [[nodiscard]] Span ends_of(std::span<const Variable> variables, std::string_view column);
 
+/// The values that a column of a variable can have, in order; none where they are not counted.
+[[nodiscard]] std::vector<double> values_of_column(const Variable& variable, std::size_t column);
+
 /// Coordinates of the unit cube that a variable takes. \param on_grid  choices are axes
 [[nodiscard]] std::size_t dimensions_of(const Variable& variable, bool on_grid);
-/// Values that it has to choose from, 0: it is no choice.
+/// Values that it has to choose from, whatever others draw; 0: it is no choice.
 [[nodiscard]] std::size_t choices_of(const Variable& variable);
-/// Which of them a coordinate chooses. \param u  in (0, 1)
-[[nodiscard]] std::size_t chosen(const Variable& variable, double u);
+/// Whether a coordinate becomes a number by the inverse of a continuous law, whatever others draw.
+[[nodiscard]] bool is_continuous(const AnyLaw& law);
+/// Whether it puts what stands at its keys somewhere, position and velocity.
+[[nodiscard]] bool places(const AnyLaw& law);
 
-/// The values of its columns. \param u  [dimensions] in (0, 1); not of choices
-void append_values(const Variable& variable, std::span<const double> u, std::size_t choice,
-                   std::vector<double>& values);
+/// Which of its values the coordinates choose, 0 where there is nothing to choose.
+/// \param u  [dimensions] each in (0, 1)   \param given  [Variable::given] what others drew
+[[nodiscard]] std::size_t chosen(const Variable& variable, std::span<const double> u,
+                                 std::span<const double> given);
+/// The values of its columns. \param choice  as chosen
+void append_values(const Variable& variable, std::span<const double> u,
+                   std::span<const double> given, std::size_t choice, std::vector<double>& values);
 /// Writes them where its keys lead. \param values  [columns] \throws InputError
 void apply(const Variable& variable, std::span<const double> values, std::size_t choice,
            TomlValue& scenario);
+
+/// In which order variables can be drawn: each after those that it looks at, else as they stand.
+/// Shorter than `variables` where some wait for one another, or for a column that there is not.
+[[nodiscard]] std::vector<std::size_t> drawing_order(std::span<const Variable> variables);
 
 }  // namespace asdic::detail::study

@@ -192,7 +192,8 @@ Summary summary_of(const Study& study, const Table& table) {
           .confidence = plan.confidence,
           .proportion_interval =
               plan.interval == ProportionInterval::wilson ? "wilson" : "clopper_pearson",
-          .intervals = std::move(intervals)};
+          .intervals = std::move(intervals),
+          .laws = law_tables(study)};
 }
 
 RunningEstimate::RunningEstimate(const Study& study) : level_(study.summary.confidence) {

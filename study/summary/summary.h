@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "study/measures/realisation.h"
+#include "study/summary/law_tables.h"
 
 namespace asdic::detail::study {
 
@@ -33,6 +34,7 @@ struct Summary {
   double confidence = 0.95;                    ///< of all intervals
   std::string proportion_interval = "wilson";  ///< or "clopper_pearson"
   std::string intervals{};                     ///< what they suppose, in a sentence
+  std::vector<LawTable> laws{};                ///< of the inputs; they are not of the rows
 };
 [[nodiscard]] Summary summary_of(const Study& study, const Table& table);
 

@@ -326,7 +326,8 @@ STANDARD_NAMES = {"depth": "m", "sea_floor_depth_below_mean_sea_level": "m",
                   "longitude": "degrees_east"}
 # UDUNITS has no decibel; CF's own table uses it. Everything else UDUNITS reads.
 UNITS = {"1", "m", "m2", "m/s", "s", "Hz", "Pa", "Pa2", "degree", "degrees", "dB", "kg/m3", "degC",
-         "degrees_north", "degrees_east"}
+         "degrees_north", "degrees_east", "min", "h", "d"}
+UNITS |= {f"({unit})-1" for unit in UNITS - {"degC"}}  # of densities
 INSIDE = {"CLASS", "NAME", "REFERENCE_LIST", "DIMENSION_LIST", "_Netcdf4Dimid",
           "_Netcdf4Coordinates", "_NCProperties", "_nc3_strict"}
 NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable"
@@ -584,7 +585,7 @@ def udunits_faults():
     """The strict list above, by UDUNITS itself where it is installed."""
     if shutil.which("udunits2") is None:
         return 0
-    bad = [u for u in sorted(UNITS - {"dB"})
+    bad = [u for u in sorted(UNITS - {"dB", "(dB)-1"})
            if subprocess.run(["udunits2", "-H", u, "-W", u], capture_output=True).returncode != 0]
     if bad:
         print(f"udunits2 does not read {bad}")

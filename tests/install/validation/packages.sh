@@ -55,7 +55,7 @@ fi
 
 # What it needs: libraries that it is linked with, and those that it loads when it first calls them.
 [ "$(uname -m)" != x86_64 ] || readelf -d "$build/bin/asdic" | grep -q hdf5 | grep . && fail "HDF5 is linked: see AsdicLazy.cmake"
-for needed in libc6 libtbb libfmt libtbbmalloc libhdf5-1 libhdf5-hl libnetcdf libsndfile libssl libsqlite3 libfftw3; do
+for needed in libc6 libtbb libfmt libtbbmalloc libhdf5-1 libhdf5-hl libnetcdf libsndfile libssl libsqlite3 libfftw3 libmuparser; do
   control asdic Depends | grep -q "$needed" || fail "asdic does not depend on $needed: $(control asdic Depends)"
 done
 if control asdic Depends | grep -i 'mpi\|python\|-dev'; then fail "asdic depends on more than it needs"; fi

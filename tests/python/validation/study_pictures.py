@@ -294,6 +294,23 @@ class WhatThePicturesShow(Case):
         self.assertEqual(fig.axes[0].get_ylabel(), "wind speed / m/s")
         self.texts_apart(fig.axes[0])
 
+    def test_a_histogram_has_its_law_over_it(self):
+        write(self.file)
+        with h5py.File(self.file, "r+") as f:
+            even = np.linspace(10e3, 40e3, 7)
+            f["laws/range/value"], f["laws/range/density"] = even, np.full(7, 1.0 / 30e3)
+            f["laws/range/cumulative"] = (even - 10e3) / 30e3
+            f["laws/kind/value"] = np.arange(3.0)
+            f["laws/kind/probability"], f["laws/kind/cumulative"] = [0.5, 0.25, 0.25], [0.5, 0.75, 1]
+        (_, fig), = study_pictures.draw(study_data.read(str(self.file)), ["histograms"])
+        lines = {a.get_xlabel(): a.patches[-1].get_data() for a in fig.axes
+                 if a.get_xlabel() in ("range / km", "kind")}
+        np.testing.assert_allclose(lines["kind"].values, [200.0, 100.0, 100.0])
+        values, edges, _ = lines["range / km"]
+        np.testing.assert_allclose(values, 400 * np.diff(edges) / 30.0)  # in km
+        words = " ".join(t.get_text() for t in fig.findobj(matplotlib.text.Text))
+        self.assertIn("their laws (black)", words)
+
     def test_units_are_not_said_twice(self):
         axes = self.figure("histograms").axes
         labels = [a.get_xlabel() for a in axes]

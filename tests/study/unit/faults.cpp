@@ -94,9 +94,12 @@ TEST(StudyFile, EveryFaultNamesLineKeyFoundAndExpected) {
       {vary + "\"environment.wind_speed\" = { law = \"grid\", from = 1, to = 2, count = 1 }\n",
        "study.toml:4: vary.\"environment.wind_speed\".count: found 1, expected a whole number from "
        "2 to 1000000"},
-      {vary + "wind = { keys = [], law = \"uniform\", low = 1, high = 2 }\n",
-       "study.toml:4: vary.wind.keys: found an array of 0, expected an array of keys, each in "
+      {vary + "wind = { keys = [\"\"], law = \"uniform\", low = 1, high = 2 }\n",
+       "study.toml:4: vary.wind.keys: found an array of 1, expected an array of keys, each in "
        "quotes"},
+      {vary + "wind = { keys = [], law = \"track\", range = 1000.0, depth = 50.0 }\n",
+       "study.toml:4: vary.wind.keys: found an array of 0, expected a key to write: this law draws "
+       "no single number"},
       {vary + "pair = { keys = [\"environment.wind_speed\", \"target.0.strength_db\"], law = "
               "\"list\", rows = [[1, 2], [3]] }\n",
        "study.toml:4: vary.pair.rows[1]: found an array of 1, expected an array of a value for "
