@@ -41,6 +41,8 @@ int study_run(const StudyOptions& options) {
     return std::move(*made);
   }();
   if (!options.quiet) warn(work.fingerprint.warnings);
+  if (const std::string design = study::design_text(order.study); !options.quiet && !design.empty())
+    print(design + '\n');
   order.run.progress = [&](const study::Progress& p) { progress->update(p); };
   const study::StudyOutcome outcome = study::run_study(work, order.run);
   progress.reset();

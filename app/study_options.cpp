@@ -155,6 +155,7 @@ int report(const StudyOrder& order, const study::StudyOutcome& outcome, bool qui
   if (outcome.left_out > 0)
     print(fmt::format("{} left out of {}: it is not known there (NaN or infinite)\n",
                       count_of(outcome.left_out, "realisation"), outcome.question));
+  for (const std::string& note : outcome.notes) print("note: " + note + '\n');
   if (order.run.until) print(until_text(outcome, *order.run.until) + '\n');
   print(fmt::format("{}: {}{}\n", file,
                     byte_count(static_cast<double>(std::filesystem::file_size(file))),

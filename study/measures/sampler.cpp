@@ -16,6 +16,14 @@ std::size_t dimensions_of(const Study& study) {
   return sum;
 }
 
+/// Coordinates of one entry of [vary] belong together: one law draws its columns.
+std::vector<std::size_t> groups_of(const Study& study) {
+  std::vector<std::size_t> groups;
+  for (std::size_t v = 0; v < study.variables.size(); ++v)
+    groups.resize(groups.size() + dimensions_of(study.variables[v], false), v);
+  return groups;
+}
+
 }  // namespace
 
 std::uint64_t grid_points(const std::vector<Variable>& variables) {
@@ -28,7 +36,9 @@ std::uint64_t grid_points(const std::vector<Variable>& variables) {
 Sampler::Sampler(const Study& study)
     : on_grid_(study.design == Design::grid),
       variables_(study.variables),
-      design_(study.design, study.seed, study.realisations, dimensions_of(study)) {
+      design_(study.design, study.seed, study.realisations, dimensions_of(study),
+              study.design_options,
+              study.design == Design::saltelli ? groups_of(study) : std::vector<std::size_t>()) {
   for (const Variable& variable : variables_) {
     first_column_.push_back(columns_.size());
     for (InputColumn& column : input_columns(variable))
@@ -60,8 +70,9 @@ Sampler::Drawn Sampler::draw(std::uint64_t index) const {
     const std::span<const double> mine(u.data() + at, count);
     const auto* choice = std::get_if<ChoiceLaw>(&variable.law);
     if (choice != nullptr && !on_grid_)
-      drawn.choices[v] = choice->kind == ChoiceLaw::Kind::in_turn ? index % choice->values.size()
-                                                                  : chosen(variable, mine[0]);
+      drawn.choices[v] = choice->kind == ChoiceLaw::Kind::in_turn
+                             ? design_.turn_of(index) % choice->values.size()
+                             : chosen(variable, mine[0]);
     append_values(variable, mine, drawn.choices[v], drawn.values);
     at += count;
   }

@@ -26,6 +26,10 @@ class Sampler {
     std::vector<std::size_t> choices;  ///< [variables] 0 for those without choices
   };
   [[nodiscard]] Drawn draw(std::uint64_t index) const;
+  /// What tells the realisation's own draws (noise, scatterers) from those of others.
+  [[nodiscard]] std::uint64_t chance_of(std::uint64_t index) const noexcept {
+    return design_.chance_of(index);
+  }
 
   /// Puts the drawn values where their keys lead. \throws InputError if a path leads nowhere
   void apply(const Drawn& drawn, TomlValue& scenario) const;

@@ -36,12 +36,51 @@ void write(const TomlValue& value, const std::string& key, const std::filesystem
 
 }  // namespace
 
+std::vector<std::string> saltelli_groups(const Study& study) {
+  std::vector<std::string> names;
+  for (const Variable& variable : study.variables) names.push_back(variable.name);
+  if (study.design_options.chance) names.emplace_back("chance");
+  return names;
+}
+
+SaltelliBlocks saltelli_blocks(const Study& study) {
+  return {saltelli_groups(study).size(), study.design_options.second_order};
+}
+
+Clusters clusters_of(const Study& study) {
+  if (study.design == Design::saltelli)
+    return {.kind = Clusters::Kind::blocks, .size = saltelli_blocks(study).rows()};
+  if (study.design_options.replicates > 1)
+    return {.kind = Clusters::Kind::replicates, .size = study.design_options.replicates};
+  return {};
+}
+
+std::string design_text(const Study& study) {
+  const Clusters clusters = clusters_of(study);
+  if (clusters.kind == Clusters::Kind::rows) return "";
+  const std::string whole = std::to_string(study.realisations / clusters.size),
+                    size = std::to_string(clusters.size);
+  if (clusters.kind == Clusters::Kind::replicates)
+    return size + " independent scrambles of " + whole +
+           " points: " + std::to_string(study.realisations) + " realisations";
+  std::string names;
+  for (const std::string& name : saltelli_groups(study))
+    names += (names.empty() ? "" : ", ") + name;
+  return whole + (whole == "1" ? " block of " : " blocks of ") + size + " realisations (A, B and " +
+         (study.design_options.second_order ? "two" : "one") + " for each of " + names +
+         "): " + std::to_string(study.realisations) + " realisations";
+}
+
 std::string identity(const Study& study) {
   // What becomes of a realisation that fails changes none of those that do not.
   std::string text = "asdic study 1;seed=" + std::to_string(study.seed) +
                      ";design=" + std::string(name(study.design)) + ";on_error=stop;";
   if (study.design == Design::latin_hypercube)
     text += "realisations=" + std::to_string(study.realisations) + ";";
+  const DesignOptions& options = study.design_options;
+  if (options.replicates > 1) text += "replicates=" + std::to_string(options.replicates) + ";";
+  if (options.second_order) text += "second_order;";
+  if (options.chance) text += "chance;";
   TomlValue scenario = study.scenario;  // without what changes no row
   if (TomlValue* run = scenario.find("run")) {
     erase_key(*run, "memory");

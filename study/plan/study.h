@@ -8,6 +8,7 @@
 
 #include "study/plan/measure_plan.h"
 #include "study/plan/summary_plan.h"
+#include "study/sampling/clusters.h"
 #include "study/sampling/design.h"
 #include "study/sampling/variable.h"
 
@@ -23,6 +24,7 @@ struct Study {
   std::uint64_t seed = 1;          ///< of designs and of every realisation's own streams
   std::uint64_t realisations = 0;  ///< indices 0 … realisations − 1
   Design design = Design::random;
+  DesignOptions design_options{};
   OnError on_error = OnError::stop;
   std::vector<Variable> variables;  ///< [vary]
   MeasurePlan measure;              ///< [measure]
@@ -38,6 +40,18 @@ struct Study {
   std::vector<std::string> overrides;  ///< "key.path=value"
   std::vector<std::string> warnings;   ///< what the reader met that the user should know
 };
+
+/// The groups of Saltelli's design, one for each entry of [vary], whose columns one law draws; and
+/// "chance" for what realisations draw beside, if that is one.
+[[nodiscard]] std::vector<std::string> saltelli_groups(const Study& study);
+[[nodiscard]] SaltelliBlocks saltelli_blocks(const Study& study);
+
+/// Which rows are not independent of one another.
+[[nodiscard]] Clusters clusters_of(const Study& study);
+
+/// "500 blocks of 8 realisations, …": what a design makes of its blocks or replicates and what that
+/// costs; "" of designs without them.
+[[nodiscard]] std::string design_text(const Study& study);
 
 /// SHA-256 of all that decides the rows (seed, design, scenario with what it includes, variables,
 /// measures, overrides), as hexadecimal text: parts with the same one belong together. How many

@@ -42,13 +42,29 @@ void read_head(TomlTable table, Study& study) {
   study.title = table.text("title", "");
   study.seed = static_cast<std::uint64_t>(table.integer("seed", 0, most, 1));
   const std::string design =
-      table.choice("design", {"random", "latin_hypercube", "sobol", "grid"}, "random");
-  for (const Design d : {Design::latin_hypercube, Design::sobol, Design::grid})
+      table.choice("design", {"random", "latin_hypercube", "sobol", "grid", "saltelli"}, "random");
+  for (const Design d : {Design::latin_hypercube, Design::sobol, Design::grid, Design::saltelli})
     if (design == name(d)) study.design = d;
+  const auto of = [&](const char* key, Design owner) {
+    const bool there = table.has(key);
+    if (there && study.design != owner)
+      throw table.fault(key, "no \"" + std::string(key) + "\" but beside design = \"" +
+                                 std::string(name(owner)) + "\"");
+    return there;
+  };
+  DesignOptions& options = study.design_options;
+  if (of("second_order", Design::saltelli))
+    options.second_order = table.flag("second_order", false);
+  if (of("chance", Design::saltelli)) options.chance = table.flag("chance", false);
   constexpr std::int64_t plenty = 1'000'000'000'000'000;
   const std::int64_t last = study.design == Design::sobol ? std::int64_t{1} << 32 : plenty;
-  if (study.design != Design::grid || table.has("realisations"))  // else: of the grid once
+  if (of("blocks", Design::saltelli)) {  // times their rows, once [vary] is known
+    if (table.has("realisations"))
+      throw table.fault("realisations", "no \"realisations\" beside blocks");
+    study.realisations = static_cast<std::uint64_t>(table.integer("blocks", 2, plenty / 1000));
+  } else if (study.design != Design::grid || table.has("realisations")) {  // else: of the grid once
     study.realisations = static_cast<std::uint64_t>(table.integer("realisations", 1, last));
+  }
   if (table.choice("on_error", {"stop", "skip"}, "stop") == "skip") study.on_error = OnError::skip;
   static_cast<void>(table.has("scenario"));
   table.finish();
@@ -93,6 +109,34 @@ void read_scenario_tree(TomlTable head, const TomlValue& document, Study& study)
   for (const std::string& assignment : overrides) apply_override(study.scenario, assignment);
 }
 
+/// Rows of designs that are made of blocks or replicates: whole ones. \param head  [study]
+void settle_rows(TomlTable head, Study& study) {
+  if (study.design == Design::saltelli && study.variables.empty())
+    throw head.fault("design", "inputs in [vary], whose indices it is for");
+  if (study.design_options.chance)
+    for (const Variable& variable : study.variables)
+      if (variable.name == "chance")
+        throw head.fault("chance",
+                         "no input of that name (name = \"…\" of " + variable.origin + ")");
+  const Clusters clusters = clusters_of(study);
+  if (head.has("blocks")) study.realisations *= clusters.size;
+  const std::uint64_t over = study.realisations % clusters.size;
+  if (clusters.kind == Clusters::Kind::rows) return;
+  const std::uint64_t least =
+      clusters.kind == Clusters::Kind::blocks ? 2 * clusters.size : clusters.size;
+  if (over == 0 && study.realisations >= least) return;
+  const std::uint64_t next = std::max(least, study.realisations - over + clusters.size);
+  const std::string what =
+      clusters.kind == Clusters::Kind::blocks
+          ? "the rows of a block (A, B and " +
+                std::string(study.design_options.second_order ? "two" : "one") +
+                " for each of the " + std::to_string(saltelli_groups(study).size()) +
+                " groups), such as "
+          : "the replicates, such as ";
+  throw head.fault("realisations", "a multiple of " + std::to_string(clusters.size) + ", " + what +
+                                       std::to_string(next));
+}
+
 }  // namespace
 
 Study read_study(const std::filesystem::path& path, std::span<const std::string> overrides) {
@@ -111,6 +155,7 @@ Study read_study(const std::filesystem::path& path, std::span<const std::string>
   study.document = keep(std::move(study.document), true);
   TomlTable own(study.document);
   study.variables = read_vary(study.document, study);
+  settle_rows(root.table("study"), study);
   if (study.realisations == 0) study.realisations = grid_points(study.variables);
   make_room(study.variables, study.scenario_path, study.scenario);
   study.measure = read_measure(own.table("measure"), example_of(study));

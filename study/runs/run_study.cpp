@@ -292,8 +292,13 @@ void write_output(const Work& work, const StudyRun& run, const OrderedEstimate& 
   outcome.skipped = estimate.skipped();
   outcome.left_out = estimate.left_out();
   outcome.question = estimate.name();
+  const auto summarise = [&](const Table& table) {
+    Summary summary = work.summarise(table);
+    outcome.notes = summary.notes;
+    return summary;
+  };
   outcome.complete =
-      assemble(output, fingerprint, outcome.range, journals.all(), work.summarise, stopped_by);
+      assemble(output, fingerprint, outcome.range, journals.all(), summarise, stopped_by);
   outcome.written = true;
   std::vector<Session> sessions;
   for (const Journal* journal : journals.all())

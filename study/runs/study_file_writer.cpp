@@ -164,7 +164,7 @@ std::string joined(const std::vector<std::string>& texts) {
 
 void StudyFileWriter::write_root() {
   const Fingerprint& fingerprint = results_.fingerprint;
-  write_filetype(file_, "asdic study", "1.3");
+  write_filetype(file_, "asdic study", "1.4");
   file_.set_attribute("", "title", fingerprint.title);
   file_.set_attribute("", "identity", fingerprint.identity);
   file_.set_attribute("", "seed", std::to_string(fingerprint.seed));
@@ -235,6 +235,7 @@ void StudyFileWriter::write_summary() {
     const std::string group = "summary/" + table.name;
     file_.make_group(group);
     file_.set_attribute(group, "title", table.title);
+    if (!table.intervals.empty()) file_.set_attribute(group, "intervals", table.intervals);
     std::vector<std::string> order;
     const std::string rows = write_rows(table, group);
     for (std::size_t i = 0; i < table.columns.size(); ++i) {

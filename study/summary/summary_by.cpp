@@ -109,6 +109,7 @@ SummaryTable start(const std::string& name, const std::string& title, const std:
 std::vector<SummaryTable> tables_by(const Study& study, const std::vector<SummaryAxis>& asked,
                                     const Table& table) {
   const SummaryPlan& plan = study.summary;
+  const Clusters clusters = clusters_of(study);
   std::vector<Axis> axes;
   std::string suffix, along;
   for (const SummaryAxis& axis : asked) {
@@ -165,15 +166,16 @@ std::vector<SummaryTable> tables_by(const Study& study, const std::vector<Summar
     add(made, probability, name + "_low", "confidence interval");
     add(made, probability, name + "_high", "confidence interval");
     for (std::size_t cell = 0; cell < cells; ++cell) {
-      double count = 0.0, hits = 0.0;
+      double hits = 0.0;
+      ClusteredMean share(clusters);
       for (const std::size_t row : rows[cell])
         if (counts(table, row, c)) {
-          count += 1.0;
+          share.add(table.index[row], table.values[c][row]);
           hits += table.values[c][row];
         }
-      std::size_t at = put_cell(made, cell, count);
-      const Interval interval = proportion_interval(plan.interval, hits, count, plan.confidence);
-      put(made, {hits, hits / count, interval.low, interval.high}, at);
+      std::size_t at = put_cell(made, cell, share.count());
+      const Interval interval = share.proportion(plan.interval, plan.confidence);
+      put(made, {hits, hits / share.count(), interval.low, interval.high}, at);
     }
     all.push_back(std::move(made));
   }
@@ -190,9 +192,9 @@ std::vector<SummaryTable> tables_by(const Study& study, const std::vector<Summar
                                      [&](std::size_t row) { return table.valid[row] != 0; });
     std::size_t at = put_cell(made, cell, static_cast<double>(valid));
     for (const std::size_t c : others) {
-      Moments moments;
+      ClusteredMean moments(clusters);
       for (const std::size_t row : rows[cell])
-        if (counts(table, row, c)) moments.add(table.values[c][row]);
+        if (counts(table, row, c)) moments.add(table.index[row], table.values[c][row]);
       const Interval interval = moments.mean_interval(plan.confidence);
       put(made, {moments.mean(), interval.low, interval.high}, at);
     }
