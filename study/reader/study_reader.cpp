@@ -53,6 +53,8 @@ void read_head(TomlTable table, Study& study) {
     return there;
   };
   DesignOptions& options = study.design_options;
+  if (of("replicates", Design::sobol))
+    options.replicates = static_cast<std::uint64_t>(table.integer("replicates", 1, 1024));
   if (of("second_order", Design::saltelli))
     options.second_order = table.flag("second_order", false);
   if (of("chance", Design::saltelli)) options.chance = table.flag("chance", false);

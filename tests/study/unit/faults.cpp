@@ -56,6 +56,12 @@ TEST(StudyFile, EveryFaultNamesLineKeyFoundAndExpected) {
       {study + "design = \"sobol\"\nchance = true\n",
        "study.toml:4: study.chance: found true, expected no \"chance\" but beside design = "
        "\"saltelli\""},
+      {study + "replicates = 4\n",
+       "study.toml:3: study.replicates: found 4, expected no \"replicates\" but beside design = "
+       "\"sobol\""},
+      {study + "design = \"sobol\"\nreplicates = 4\n" + measure,
+       "study.toml:2: study.realisations: found 10, expected a multiple of 4, the replicates, such "
+       "as 12"},
       {study + "design = \"saltelli\"\nblocks = 5\n",
        "study.toml:2: study.realisations: found 10, expected no \"realisations\" beside blocks"},
       {study + "design = \"saltelli\"\n" + measure,
@@ -215,7 +221,15 @@ TEST(StudyFile, BlocksAreCountedInRealisations) {
   EXPECT_EQ(design_text(second),
             "5 blocks of 8 realisations (A, B and two for each of wind_speed, target_0, chance): "
             "40 realisations");
+  const Study scrambles = read("design = \"sobol\"\nrealisations = 64\nreplicates = 16\n");
+  EXPECT_EQ(design_text(scrambles), "16 independent scrambles of 4 points: 64 realisations");
+  // What decides the rows is in the identity, and one replicate is the design as it was.
+  const Study plain = read("design = \"sobol\"\nrealisations = 64\n"),
+              one = read("design = \"sobol\"\nrealisations = 64\nreplicates = 1\n");
+  EXPECT_EQ(identity(plain), identity(one));
+  EXPECT_NE(identity(plain), identity(scrambles));
   EXPECT_NE(identity(first), identity(second));
+  EXPECT_EQ(design_text(plain), "");
 }
 
 // What would end a study when its file is written, after all realisations, is said when it is read.
