@@ -15,7 +15,7 @@ struct StudyOptions {
   std::string path, output, range, shard;
   std::vector<std::string> overrides;
   std::optional<int> threads;
-  std::optional<double> until;
+  std::vector<std::string> until;
   bool fresh = false, force = false, assemble = false, retry = false, quiet = false;
 };
 

@@ -41,11 +41,11 @@ struct Progress {
 struct StudyRun {
   std::filesystem::path output{};
   IndexRange range{};
-  std::optional<double> until{};  ///< half-width of the confidence interval to stop at
-  bool fresh = false;             ///< begins anew, whatever results are there
-  bool force = false;             ///< even over a file that asdic did not write
-  bool assemble_only = false;     ///< makes no rows: a file of those that are there
-  bool retry = false;             ///< makes rows again that were skipped, or given up
+  Until until{};               ///< what has to be known how well, to stop
+  bool fresh = false;          ///< begins anew, whatever results are there
+  bool force = false;          ///< even over a file that asdic did not write
+  bool assemble_only = false;  ///< makes no rows: a file of those that are there
+  bool retry = false;          ///< makes rows again that were skipped, or given up
   std::chrono::duration<double> silence{120.0};  ///< of a rank of MPI that is then taken for dead
   Session session{};
   std::stop_token stop{};                           ///< leaves the realisations in hand
@@ -65,6 +65,7 @@ struct StudyOutcome {
   IndexRange range{};          ///< of the output; shorter than asked for after --until
   bool stopped_early = false;  ///< by --until
   std::optional<Estimate> estimate{};
+  std::vector<Known> known{};        ///< how well is known what --until asks for
   std::string warning{};             ///< mixed builds
   std::vector<std::string> notes{};  ///< what the user should know of the summary
 };
