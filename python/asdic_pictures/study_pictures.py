@@ -473,7 +473,8 @@ def draw_convergence(study: Study) -> dict:
     axes.set_xscale("log")
     axes.set_xlabel("realisations")
     axes.set_ylabel(table[name].label())
-    style.subtitle(axes, f"{study.heading()} · band: {study.interval}")
+    how = f", {table.method}" if table.method else ""
+    style.subtitle(axes, f"{study.heading()} · band: {study.interval}{how}")
     return {"convergence": fig}
 
 

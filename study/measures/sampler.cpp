@@ -16,11 +16,15 @@ std::size_t dimensions_of(const Study& study) {
   return sum;
 }
 
-/// Coordinates of one entry of [vary] belong together: one law draws its columns.
+/// [dimensions] to which group of Saltelli's design each coordinate belongs.
 std::vector<std::size_t> groups_of(const Study& study) {
+  std::vector<std::size_t> of_variable(study.variables.size(), 0);
+  const std::vector<SaltelliGroup> all = saltelli_groups(study);
+  for (std::size_t g = 0; g < all.size(); ++g)
+    for (const std::size_t v : all[g].variables) of_variable[v] = g;
   std::vector<std::size_t> groups;
   for (std::size_t v = 0; v < study.variables.size(); ++v)
-    groups.resize(groups.size() + dimensions_of(study.variables[v], false), v);
+    groups.resize(groups.size() + dimensions_of(study.variables[v], false), of_variable[v]);
   return groups;
 }
 

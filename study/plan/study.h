@@ -41,9 +41,14 @@ struct Study {
   std::vector<std::string> warnings;   ///< what the reader met that the user should know
 };
 
-/// The groups of Saltelli's design, one for each entry of [vary], whose columns one law draws; and
-/// "chance" for what realisations draw beside, if that is one.
-[[nodiscard]] std::vector<std::string> saltelli_groups(const Study& study);
+/// Inputs that have one index together.
+struct SaltelliGroup {
+  std::string name;                    ///< "range", "wind_speed + depth"; "chance"
+  std::vector<std::size_t> variables;  ///< none: what realisations draw beside their inputs
+};
+/// The groups of Saltelli's design: those of DesignOptions, every other entry of [vary] by itself,
+/// and chance, if it is one. An entry that draws nothing is in none.
+[[nodiscard]] std::vector<SaltelliGroup> saltelli_groups(const Study& study);
 [[nodiscard]] SaltelliBlocks saltelli_blocks(const Study& study);
 
 /// Which rows are not independent of one another.

@@ -4,6 +4,7 @@
 #include <array>
 #include <string_view>
 
+#include "core/text.h"
 #include "io/scenario/document.h"
 #include "io/scenario/scenario_reader.h"
 #include "io/text/csv_table.h"
@@ -60,7 +61,8 @@ void read_head(TomlTable table, Study& study) {
   if (of("chance", Design::saltelli)) options.chance = table.flag("chance", false);
   constexpr std::int64_t plenty = 1'000'000'000'000'000;
   const std::int64_t last = study.design == Design::sobol ? std::int64_t{1} << 32 : plenty;
-  if (of("blocks", Design::saltelli)) {  // times their rows, once [vary] is known
+  static_cast<void>(of("groups", Design::saltelli));  // once [vary] is known
+  if (of("blocks", Design::saltelli)) {               // times their rows, once [vary] is known
     if (table.has("realisations"))
       throw table.fault("realisations", "no \"realisations\" beside blocks");
     study.realisations = static_cast<std::uint64_t>(table.integer("blocks", 2, plenty / 1000));
@@ -111,15 +113,46 @@ void read_scenario_tree(TomlTable head, const TomlValue& document, Study& study)
   for (const std::string& assignment : overrides) apply_override(study.scenario, assignment);
 }
 
+/// groups = [["wind_speed", "depth"], …]: names of entries of [vary].
+void read_groups(TomlTable& head, Study& study) {
+  if (!head.has("groups")) return;
+  std::vector<std::string> names, taken;
+  std::string list;
+  for (const Variable& variable : study.variables) {
+    names.push_back(variable.name);
+    list += (list.empty() ? "" : ", ") + in_quotes(variable.name);
+  }
+  const TomlValue& value = *study.document.find("study")->find("groups");
+  const auto* groups = std::get_if<TomlValue::Array>(&value.data);
+  if (groups == nullptr) throw head.fault("groups", "an array of arrays of inputs, " + list);
+  for (std::size_t g = 0; g < groups->size(); ++g) {
+    const std::string key = "groups[" + std::to_string(g) + "]";
+    const auto* group = std::get_if<TomlValue::Array>(&(*groups)[g].data);
+    if (group == nullptr || group->empty()) throw head.fault(key, "an array of inputs, " + list);
+    study.design_options.groups.emplace_back();
+    for (std::size_t i = 0; i < group->size(); ++i) {
+      const std::string at = key + "[" + std::to_string(i) + "]";
+      const auto* name = std::get_if<std::string>(&(*group)[i].data);
+      if (name == nullptr || std::find(names.begin(), names.end(), *name) == names.end())
+        throw head.fault(at, "an input, one of " + list, (*group)[i].describe());
+      if (std::find(taken.begin(), taken.end(), *name) != taken.end())
+        throw head.fault(at, "every input once", in_quotes(*name) + " twice");
+      taken.push_back(*name);
+      study.design_options.groups.back().push_back(*name);
+    }
+  }
+}
+
 /// Rows of designs that are made of blocks or replicates: whole ones. \param head  [study]
 void settle_rows(TomlTable head, Study& study) {
-  if (study.design == Design::saltelli && study.variables.empty())
+  if (study.design == Design::saltelli && saltelli_groups(study).empty())
     throw head.fault("design", "inputs in [vary], whose indices it is for");
   if (study.design_options.chance)
     for (const Variable& variable : study.variables)
       if (variable.name == "chance")
         throw head.fault("chance",
                          "no input of that name (name = \"…\" of " + variable.origin + ")");
+  read_groups(head, study);
   const Clusters clusters = clusters_of(study);
   if (head.has("blocks")) study.realisations *= clusters.size;
   const std::uint64_t over = study.realisations % clusters.size;

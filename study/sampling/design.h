@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -16,6 +17,8 @@ struct DesignOptions {
   std::uint64_t replicates = 1;  ///< sobol: independently scrambled nets that take turns
   bool second_order = false;     ///< saltelli: for indices of pairs, too
   bool chance = false;           ///< saltelli: and of what a realisation draws beside its inputs
+  /// saltelli: names of inputs that have one index together; others have their own
+  std::vector<std::vector<std::string>> groups{};
 };
 
 /// The rows of Saltelli's blocks. A block has two independent points A and B, and for every group

@@ -61,7 +61,17 @@ ClusteredMean::Squares ClusteredMean::squares() const {
 
 double ClusteredMean::variance(const Squares& all) const noexcept {
   const double n = moments_.count(), mean = moments_.mean() - shift_;
-  const double scatter = std::max(0.0, all.ss - 2.0 * mean * all.sn + mean * mean * all.nn);
+  double scatter = all.ss - 2.0 * mean * all.sn + mean * mean * all.nn;
+  if (clusters_.kind == Clusters::Kind::replicates) {  // may be alike to many digits
+    scatter = 0.0;
+    for (const Sums& sums : replicates_) {
+      const double d = sums.sum - mean * sums.count;
+      scatter += d * d;
+    }
+  }
+  // What is left of blocks that are all alike is rounding.
+  if (scatter < 4e-15 * (all.ss + mean * mean * all.nn) && clusters_.kind == Clusters::Kind::blocks)
+    scatter = 0.0;
   return all.clusters / (all.clusters - 1.0) * scatter / (n * n);
 }
 
@@ -86,7 +96,9 @@ Interval ClusteredMean::proportion(ProportionInterval kind, double confidence) c
     if (of_mean > 1e-14 * of_one / n && of_one > 0.0) {
       const double z = two_sided(confidence) / student(confidence, all.clusters - 1.0);
       rows = of_one / of_mean * z * z;
-      if (!replicates) rows = std::min(rows, n);
+      // Beyond n² the least width below is wider, beyond 10⁸ the beta distribution's tails are
+      // slow.
+      rows = std::min(rows, replicates ? std::max(n, std::min(n * n, 1e8)) : n);
     }
   }
   Interval interval = proportion_interval(kind, p * rows, rows, confidence);

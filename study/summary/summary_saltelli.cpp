@@ -25,9 +25,9 @@ std::vector<std::vector<std::optional<std::size_t>>> places(const SaltelliBlocks
 
 /// The column of a group that has one alone, whose values have an order.
 std::optional<std::size_t> single_column(const Study& study, const Table& table,
-                                         std::size_t group) {
-  if (group >= study.variables.size()) return std::nullopt;
-  const std::vector<InputColumn> columns = input_columns(study.variables[group]);
+                                         const SaltelliGroup& group) {
+  if (group.variables.size() != 1) return std::nullopt;
+  const std::vector<InputColumn> columns = input_columns(study.variables[group.variables.front()]);
   if (columns.size() != 1 || !columns.front().labels.empty()) return std::nullopt;
   for (std::size_t c = 0; c < table.columns.size(); ++c)
     if (table.columns[c].name == columns.front().name) return c;
@@ -57,7 +57,9 @@ Table independent_rows(const Study& study, const Table& table) {
 std::vector<SummaryTable> saltelli_tables(const Study& study, const Table& table) {
   const SummaryPlan& plan = study.summary;
   const SaltelliBlocks blocks = saltelli_blocks(study);
-  const std::vector<std::string> groups = saltelli_groups(study);
+  const std::vector<SaltelliGroup> all_groups = saltelli_groups(study);
+  std::vector<std::string> groups;
+  for (const SaltelliGroup& group : all_groups) groups.push_back(group.name);
   const auto row_places = places(blocks, table);
   const Table independent = independent_rows(study, table);
   std::vector<std::string> measures;
@@ -72,8 +74,8 @@ std::vector<SummaryTable> saltelli_tables(const Study& study, const Table& table
       .columns = {{.name = "measure", .unit = "1", .meaning = "column", .labels = measures},
                   {.name = "input",
                    .unit = "1",
-                   .meaning = "entry of [vary], all its columns together; chance: what a "
-                              "realisation draws beside",
+                   .meaning = "entry of [vary], or group of them, all columns together; chance: "
+                              "what a realisation draws beside",
                    .labels = groups},
                   {.name = "count", .unit = "1", .meaning = "blocks in which all is known"},
                   {.name = "left_out", .unit = "1", .meaning = "blocks in which it is not"},
@@ -134,7 +136,7 @@ std::vector<SummaryTable> saltelli_tables(const Study& study, const Table& table
       const Index total =
           total_order_index(blocks, values, i, proportion, plan.interval, plan.confidence);
       RankCorrelation rank{no_value, no_value, no_value};
-      if (const std::optional<std::size_t> c = single_column(study, table, i)) {
+      if (const std::optional<std::size_t> c = single_column(study, table, all_groups[i])) {
         std::vector<double> x, y;
         for (std::size_t row = 0; row < independent.index.size(); ++row)
           if (counts(independent, row, m) && counts(independent, row, *c)) {

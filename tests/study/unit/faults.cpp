@@ -73,6 +73,19 @@ TEST(StudyFile, EveryFaultNamesLineKeyFoundAndExpected) {
            measure,
        "study.toml:2: study.realisations: found 10, expected a multiple of 6, the rows of a block "
        "(A, B and two for each of the 2 groups), such as 12"},
+      {"[study]\nblocks = 3\ndesign = \"saltelli\"\ngroups = [[\"wind\"]]\n[vary]\n"
+       "\"environment.wind_speed\" = { law = \"uniform\", low = 3, high = 4 }\n" +
+           measure,
+       "study.toml:4: study.groups[0][0]: found \"wind\", expected an input, one of "
+       "\"wind_speed\""},
+      {"[study]\nblocks = 3\ndesign = \"saltelli\"\ngroups = [[\"wind_speed\"], [\"wind_speed\"]]\n"
+       "[vary]\n\"environment.wind_speed\" = { law = \"uniform\", low = 3, high = 4 }\n" +
+           measure,
+       "study.toml:4: study.groups[1][0]: found \"wind_speed\" twice, expected every input once"},
+      {study + "groups = []\n",
+       "study.toml:3: study.groups: found an array of 0, expected no \"groups\" but beside design "
+       "= "
+       "\"saltelli\""},
       {study + "design = \"saltelli\"\n[vary]\n"
                "\"environment.wind_speed\" = { law = \"list\", values = [3, 4] }\n",
        "study.toml:5: vary.\"environment.wind_speed\".law: found \"list\", expected "
@@ -221,6 +234,12 @@ TEST(StudyFile, BlocksAreCountedInRealisations) {
   EXPECT_EQ(design_text(second),
             "5 blocks of 8 realisations (A, B and two for each of wind_speed, target_0, chance): "
             "40 realisations");
+  const Study together =
+      read("design = \"saltelli\"\nblocks = 5\ngroups = [[\"target_0\", \"wind_speed\"]]\n");
+  EXPECT_EQ(design_text(together),
+            "5 blocks of 3 realisations (A, B and one for each of wind_speed + target_0): 15 "
+            "realisations");
+  EXPECT_NE(identity(first), identity(together));
   const Study scrambles = read("design = \"sobol\"\nrealisations = 64\nreplicates = 16\n");
   EXPECT_EQ(design_text(scrambles), "16 independent scrambles of 4 points: 64 realisations");
   // What decides the rows is in the identity, and one replicate is the design as it was.

@@ -235,6 +235,25 @@ TEST(Sensitivity, GroupsAndCategories) {
   EXPECT_NEAR(column_named(t, "total_order")[1], (2.0 / 3.0) / v, 0.05);
 }
 
+// Inputs of a group have one index, of all that they do alone and with each other: x₁ and x₃ of
+// Ishigami's function leave nothing for x₂ to act with.
+TEST(Sensitivity, NamedGroupsHaveOneIndex) {
+  const Ishigami truth;
+  FunctionStudy made = Ishigami::study(6000, 21, false);
+  made.study.design_options.groups = {{"x3", "x1"}};
+  EXPECT_EQ(saltelli_blocks(made.study).rows(), 4U);
+  made.study.realisations = 6000 * 4;
+  const auto tables = summarise(made.study, made.table());
+  const SummaryTable& t = table_named(tables, "sensitivity");
+  ASSERT_EQ(t.columns[1].labels, (std::vector<std::string>{"x1 + x3", "x2"}));
+  const double both = (truth.v1 + truth.v13) / truth.v;
+  for (const char* order : {"first_order", "total_order"}) {
+    EXPECT_NEAR(column_named(t, order)[0], both, 0.06) << order;
+    EXPECT_NEAR(column_named(t, order)[1], truth.first[1], 0.06) << order;
+  }
+  EXPECT_NEAR(column_named(t, "unexplained")[0], 0.0, 0.06);
+}
+
 // What never made a difference in a hundred blocks may make one: the interval says how much.
 TEST(Sensitivity, AnInputThatRarelyMattersIsNotDeclaredDead) {
   Coverage rare;
