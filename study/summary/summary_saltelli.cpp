@@ -59,6 +59,7 @@ std::vector<SummaryTable> saltelli_tables(const Study& study, const Table& table
   const SaltelliBlocks blocks = saltelli_blocks(study);
   const std::vector<SaltelliGroup> all_groups = saltelli_groups(study);
   std::vector<std::string> groups;
+  groups.reserve(all_groups.size());
   for (const SaltelliGroup& group : all_groups) groups.push_back(group.name);
   const auto row_places = places(blocks, table);
   const Table independent = independent_rows(study, table);
