@@ -15,7 +15,7 @@ setup(
     description="Active sonar in a real ocean",
     license="BSD-3-Clause",
     packages=find_packages("python"),
-    py_modules=["asdic_client"],
+    py_modules=["asdic_client", "asdic_stream"],
     package_dir={"": "python"},
     entry_points={"console_scripts": ["asdic-moos=asdic_middleware.moos_app:main"]},
     package_data={"asdic": ["py.typed", "*.pyi"], "asdic_page": ["*.js", "*.css", "*/*.js", "*/*.css"]},

@@ -10,6 +10,7 @@
 #include "app/console.h"
 #include "app/ping_report.h"
 #include "app/result_info.h"
+#include "app/study_comparison.h"
 #include "app/study_info.h"
 #include "core/error.h"
 #include "io/hdf5/file_check.h"
@@ -128,6 +129,7 @@ std::string summary(const PingFile& file) {
 
 int info(const std::string& path) {
   if (is_study_file(path)) return study_info(path);
+  if (is_comparison_file(path)) return comparison_info(path);
   if (is_propagation_file(path)) return propagation_info(path);
   if (is_area_file(path)) return area_info(path);
   if (std::filesystem::path(path).extension() == ".wav") return wav_info(path);
@@ -163,6 +165,11 @@ int check(const std::string& path) {
     const study::StudyFile file(path);
     file.check_parts();
     file.verify();
+    print(path + ": every dataset matches the manifest\n");
+    return 0;
+  }
+  if (is_comparison_file(path)) {
+    check_comparison(path);
     print(path + ": every dataset matches the manifest\n");
     return 0;
   }

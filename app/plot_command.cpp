@@ -6,6 +6,7 @@
 #include "app/command.h"
 #include "app/picture_source.h"
 #include "app/pictures.h"
+#include "app/study_comparison.h"
 #include "app/study_info.h"
 #include "core/error.h"
 #include "io/hdf5/readable.h"
@@ -95,11 +96,13 @@ int plot(const PlotOptions& options) {
     if (!options.scenario.overrides.empty())
       throw InputError({.where = "--set", .got = given, .expected = "a scenario, .toml"});
   }
-  if (options.html && (is_scenario(given) || !is_ping_file(given)))
-    throw InputError(
-        {.where = given,
-         .got = "--html for a file that holds no pings",
-         .expected = "a file of asdic ping; the others have pictures, without --html"});
+  const bool has_page = !is_scenario(given) &&
+                        (is_ping_file(given) || is_study_file(given) || is_comparison_file(given));
+  if (options.html && !has_page)
+    throw InputError({.where = given,
+                      .got = "--html for a file that holds neither pings nor a study",
+                      .expected = "a file of asdic ping or asdic study; the others have pictures, "
+                                  "without --html"});
   const TemporaryFolder folder;
   std::filesystem::path file = given;
   std::string pictures = options.folder;
@@ -110,6 +113,8 @@ int plot(const PlotOptions& options) {
     if (pictures.empty()) pictures = folder_beside(given);
   } else if (is_study_file(given)) {
     study::StudyFile(given).check_parts();
+  } else if (is_comparison_file(given)) {
+    check_comparison(given);
   } else if (is_area_file(given)) {
     static_cast<void>(read_coverage_summary(given));
   } else if (is_ping_file(given)) {

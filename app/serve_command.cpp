@@ -14,6 +14,7 @@
 #include "io/text/csv_table.h"
 #include "raytrace/parallel/progress.h"
 #include "serve/command_log.h"
+#include "serve/replay.h"
 #include "serve/server.h"
 #include "serve/stream/ring_outlet.h"
 #include "serve/stream/udp_outlet.h"

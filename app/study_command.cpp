@@ -8,19 +8,35 @@
 
 #include "app/console.h"
 #include "app/interrupt.h"
+#include "app/pictures.h"
+#include "app/study_comparison.h"
 #include "app/study_options.h"
 #include "app/study_progress.h"
 #include "app/warn.h"
 #include "core/error.h"
 #include "raytrace/parallel/stop.h"
 #include "raytrace/propagation.h"
+#include "study/crew/crew_run.h"
 
 namespace asdic::detail::app {
 namespace {
 
+void check_join(const StudyOptions& options) {
+  if (options.silence && !options.join)
+    throw InputError({.where = "--silence", .got = "no --join", .expected = "both or none"});
+  if (options.join &&
+      (!options.until.empty() || options.fresh || options.assemble || options.retry ||
+       options.compare || !options.range.empty() || !options.shard.empty()))
+    throw InputError({.where = "--join",
+                      .got = "--until, --fresh, --retry, --assemble, --compare, --realisations or "
+                             "--shard beside it",
+                      .expected = "none of them: the same whole study in all processes"});
+}
+
 int study_run(const StudyOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   StudyOrder order = order_of(options);
+  check_join(options);
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   static_cast<std::size_t>(order.threads));
   const StopOnInterrupt interrupt(
@@ -44,10 +60,14 @@ int study_run(const StudyOptions& options) {
   if (const std::string design = study::design_text(order.study); !options.quiet && !design.empty())
     print(design + '\n');
   order.run.progress = [&](const study::Progress& p) { progress->update(p); };
-  const study::StudyOutcome outcome = study::run_study(work, order.run);
+  const study::StudyOutcome outcome =
+      options.join ? study::run_crew(work, order.run) : study::run_study(work, order.run);
   progress.reset();
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
-  return report(order, outcome, options.quiet, wall.count());
+  const int status = report(order, outcome, options.quiet, wall.count());
+  if (status != 0 || !options.report || options.compare) return status;
+  flush_output();
+  return draw_pictures({order.run.output.string(), "--html"});
 }
 
 }  // namespace
@@ -57,6 +77,11 @@ void add_study_command(Program& program) {
       "study", "Simulate the realisations of a Monte Carlo study, into one HDF5 file.",
       [](const Command& command) {
         auto options = std::make_shared<StudyOptions>();
+        command.add_option("STUDY", options->paths, "study file (TOML); several with --compare")
+            .required();
+        command.add_flag("--compare", options->compare,
+                         "make several studies of the same realisations and say which is better, "
+                         "where and how sure; -o is the comparison's file");
         add_study_options(command, *options);
         const Option range =
             command
@@ -72,13 +97,28 @@ void add_study_command(Program& program) {
                 "Slurm job array")
             .type_name("I/N|slurm")
             .excludes(range);
+        command.add_flag("--report", options->report,
+                         "then write a page for a browser beside the file: question, answers with "
+                         "their intervals, what was drawn, pictures, seeds and digests");
+        command.add_flag("--join", options->join,
+                         "make the study together with all processes that run the same command, on "
+                         "machines that share its folder; they come and go, and one that is lost "
+                         "costs the rows that it had in hand");
+        command
+            .add_option("--silence", options->silence,
+                        "with --join: after so long without a sign of life a process is taken for "
+                        "gone; default: 120 s")
+            .type_name("SECONDS")
+            .check(above_zero());
         command.add_flag("--assemble", options->assemble,
                          "make no realisations: write a file of those that are there");
         command.footer(
             "Whatever stops it (Ctrl-C, a kill, a power cut), the same command goes on where it "
             "was.\n"
             "Example:  asdic study scenarios/studies/detection_range.toml -o detection_range.h5");
-        command.runs([options] { return study_run(*options); });
+        command.runs([options] {
+          return options->compare ? compare_studies(*options, study_run) : study_run(*options);
+        });
       });
 }
 

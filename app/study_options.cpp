@@ -50,7 +50,6 @@ void check_until(const StudyOptions& options, const StudyOrder& order) {
 }  // namespace
 
 void add_study_options(const Command& command, StudyOptions& options) {
-  command.add_option("STUDY", options.path, "study file (TOML)").required();
   command
       .add_option("-o,--output", options.output,
                   "file to write; default: the study's name with .h5, in this folder")
@@ -79,22 +78,28 @@ void add_study_options(const Command& command, StudyOptions& options) {
 }
 
 StudyOrder order_of(const StudyOptions& options) {
-  StudyOrder order{.study = study::read_study(options.path, options.overrides)};
+  if (options.paths.size() != 1)
+    throw InputError({.where = options.paths.at(1),
+                      .got = "a second study",
+                      .expected = "one; --compare makes several and compares them"});
+  const std::string& path = options.paths.front();
+  StudyOrder order{.study = study::read_study(path, options.overrides)};
   order.threads = options.threads.value_or(tbb::info::default_concurrency());
   const std::uint64_t count = order.study.realisations;
   order.run.range = range_of(options, count);
-  order.run.output = options.output.empty() ? default_output(options.path, order.run.range, count)
+  order.run.output = options.output.empty() ? default_output(path, order.run.range, count)
                                             : std::filesystem::path(options.output);
-  check_output(order.run.output, rules_for(order.run.output, options.force, options.path));
+  check_output(order.run.output, rules_for(order.run.output, options.force, path));
   check_until(options, order);
   order.run.until = study::Until(order.study, options.until);
   order.run.fresh = options.fresh;
   order.run.force = options.force;
   order.run.retry = options.retry;
+  if (options.silence) order.run.silence = std::chrono::duration<double>(*options.silence);
   order.run.note = [](const std::string& text) { tell("asdic: note: " + text); };
   order.run.assemble_only = options.assemble;
   order.run.session.made = provenance(order.threads);
-  order.run.session.study_path = std::filesystem::absolute(options.path).string();
+  order.run.session.study_path = std::filesystem::absolute(path).string();
   return order;
 }
 
@@ -149,6 +154,11 @@ int report(const StudyOrder& order, const study::StudyOutcome& outcome, bool qui
             : fmt::format("interrupted after {} of {}; {}, and the same command goes on", there,
                           count_of(outcome.total, "realisation"), journals_hold(order.run.output)));
   if (quiet) return 0;
+  if (outcome.by_another) {
+    print(fmt::format("{} made here\n{}: made by another process of those that joined\n",
+                      count_of(outcome.made, "realisation"), file));
+    return 0;
+  }
   if (outcome.was_complete) {
     print(fmt::format("{}: complete already, nothing to do; --fresh begins anew\n", file));
     return 0;

@@ -12,14 +12,17 @@
 namespace asdic::detail::app {
 
 struct StudyOptions {
-  std::string path, output, range, shard;
+  std::vector<std::string> paths;  ///< one; of --compare several
+  std::string output, range, shard;
   std::vector<std::string> overrides;
   std::optional<int> threads;
   std::vector<std::string> until;
-  bool fresh = false, force = false, assemble = false, retry = false, quiet = false;
+  bool fresh = false, force = false, assemble = false, retry = false, quiet = false,
+       compare = false, join = false, report = false;
+  std::optional<double> silence;  ///< of workers and ranks [s]
 };
 
-/// STUDY, -o, --set, --until, --fresh, --force, --threads, --quiet.
+/// -o, --set, --until, --fresh, --force, --threads, --quiet.
 void add_study_options(const Command& command, StudyOptions& options);
 
 /// What is to be done: the study, and the run that the options describe, but for its stop token and

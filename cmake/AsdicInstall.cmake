@@ -38,7 +38,8 @@ set(manual ${PROJECT_BINARY_DIR}/asdic-moos.1.gz)
 execute_process(COMMAND gzip -9nc ${PROJECT_SOURCE_DIR}/cmake/packages/asdic-moos.1 OUTPUT_FILE ${manual} COMMAND_ERROR_IS_FATAL ANY)
 install(FILES ${manual} DESTINATION ${CMAKE_INSTALL_DATADIR}/man/man1 COMPONENT program)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/ros DESTINATION ${CMAKE_INSTALL_DATADIR}/asdic COMPONENT program
-        PATTERN "__pycache__" EXCLUDE)
+        PATTERN "__pycache__" EXCLUDE
+        PATTERN "scripts/*" PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenarios/ DESTINATION ${CMAKE_INSTALL_DATADIR}/asdic/scenarios COMPONENT program)
 # The pages, so that their links lead somewhere.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/asdic COMPONENT program

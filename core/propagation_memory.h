@@ -26,6 +26,9 @@ namespace asdic::detail {
 enum class Kept : std::uint64_t {
   slice,
   cycle_waves,
+  water_column,
+  layer_pair,
+  waterborne_waves,
   legs,
   followed_legs,
   pulse_moments,

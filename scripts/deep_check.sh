@@ -150,6 +150,13 @@ else
   verdict serve FAILED "$(tail -n 1 <<<"$said")"
 fi
 
+# A million lines that no client should send.
+if said=$(/usr/bin/python3 tests/serve/validation/hostile.py 1000000 2>&1); then
+  verdict hostile good "$(head -n 1 <<<"$said")"
+else
+  verdict hostile FAILED "$(tail -n 1 <<<"$said")"
+fi
+
 # 24 hours of a continuous sonar that turns all the time, as fast as it goes: no more memory after them.
 if said=$(/usr/bin/python3 tests/serve/validation/listening.py 86400 2>&1); then
   verdict listening good "$(grep 'times as fast' <<<"$said")"

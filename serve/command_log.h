@@ -1,13 +1,12 @@
 #pragma once
+#include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
 
 namespace asdic::detail::serve {
 
-struct Answer;
 struct Command;
 struct SessionSettings;
 
@@ -23,11 +22,21 @@ class CommandLog {
   CommandLog& operator=(const CommandLog&) = delete;
 
   [[nodiscard]] int new_session();
-  /// \param acts  time of the scenario at which it acted, by the clock [s]
-  /// \param begun, done  and `command.received` since the session's `start` [s]
+  /// How a command was carried out.
+  struct CarriedOut {
+    double start = 0.0, begun = 0.0, done = 0.0;  ///< of the session, and of it, on the clock [s]
+    std::optional<double> acts;                   ///< by the clock: its time of the scenario [s]
+    std::optional<std::int64_t> heard;            ///< sample up to which the session had been heard
+  };
   /// \throws RunError if it cannot be written
-  void write(int session, const Command& command, const std::optional<double>& acts, double start,
-             double begun, double done, bool ok);
+  void write(int session, const Command& command, const CarriedOut& how, bool ok);
+  /// A ping of the schedule was sent. \throws RunError
+  void scheduled(int session, std::int64_t heard, int ping);
+  /// Somebody had listened, and the session was not heard any further. \throws RunError
+  void ended(int session, std::int64_t heard);
+
+  /// Says what is served.
+  [[nodiscard]] static std::string first_line(const SessionSettings& settings);
 
  private:
   void append(const std::string& line);
@@ -36,12 +45,5 @@ class CommandLog {
   std::string name_;
   int file_ = -1, sessions_ = 0;
 };
-
-/// Carries out again what a log holds, session by session in its order; what had been refused is
-/// left out. \param tell  gets what the clients got
-/// \return commands that were refused this time
-/// \throws InputError{where: "--replay"} if it is none, or one of another scenario
-std::size_t replay(const SessionSettings& settings, const std::filesystem::path& log,
-                   const std::function<void(const Answer&)>& tell);
 
 }  // namespace asdic::detail::serve

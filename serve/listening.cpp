@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include "serve/places.h"
 #include "serve/session_state.h"
@@ -76,6 +77,15 @@ std::int64_t Listening::position() const {
 
 double Listening::time() const { return static_cast<double>(position()) / rate_; }
 
+Listening::Heard Listening::heard() const {
+  const std::lock_guard lock(mutex_);
+  Heard heard{.position = stream_.position(), .time = stream_.time_of(stream_.position())};
+  heard.oldest = heard.time;
+  for (const LiveStream::Sounding& one : stream_.sounding())
+    heard.oldest = std::min(heard.oldest, one.sent.time);
+  return heard;
+}
+
 double Listening::whole_samples(double time) const { return std::round(time * rate_) / rate_; }
 
 void Listening::begin(const Blocks& blocks, double from) {
@@ -87,10 +97,11 @@ void Listening::begin(const Blocks& blocks, double from) {
   active_ = true;
 }
 
-void Listening::end() {
+std::int64_t Listening::end() {
   const std::lock_guard lock(mutex_);
   active_ = false;
   blocks_.sink.reset();
+  return stream_.position();
 }
 
 std::optional<Listening::Blocks> Listening::blocks() const {
@@ -99,11 +110,19 @@ std::optional<Listening::Blocks> Listening::blocks() const {
   return blocks_;
 }
 
+std::int64_t Listening::end_of_next() const {
+  const std::int64_t end = stream_.position() + blocks_.samples;
+  return blocks_.end ? std::min(end, *blocks_.end) : end;
+}
+
 double Listening::next_end() const {
   const std::lock_guard lock(mutex_);
-  std::int64_t end = stream_.position() + blocks_.samples;
-  if (blocks_.end) end = std::min(end, *blocks_.end);
-  return stream_.time_of(end);
+  return stream_.time_of(end_of_next());
+}
+
+bool Listening::is_over() const {
+  const std::lock_guard lock(mutex_);
+  return !active_ || end_of_next() <= stream_.position();
 }
 
 void Listening::scheduled_until(double time) {
@@ -117,17 +136,17 @@ bool Listening::is_prepared() const {
   return stream_.time_of(sounded_until_) >= end && (!blocks_.scheduled || scheduled_until_ >= end);
 }
 
-std::optional<Listening::Block> Listening::next() {
+std::optional<Listening::Block> Listening::next(const std::function<bool(double end)>& may) {
   const std::lock_guard lock(mutex_);
   if (!active_) return std::nullopt;
-  std::int64_t samples = blocks_.samples;
-  if (blocks_.end) samples = std::min(samples, *blocks_.end - stream_.position());
+  const std::int64_t samples = end_of_next() - stream_.position();
+  if (!may(stream_.time_of(end_of_next()))) return std::nullopt;
   if (samples <= 0) {
     active_ = false;
     blocks_.sink.reset();
     return std::nullopt;
   }
-  Block block{.number = number_++,
+  Block block{.number = number_,
               .time = stream_.time_of(stream_.position()),
               .channels = stream_.channels(),
               .samples = static_cast<std::size_t>(samples),
@@ -136,6 +155,7 @@ std::optional<Listening::Block> Listening::next() {
               .place = stream_.place(),
               .sink = blocks_.sink};
   block.pressure = stream_.take(block.samples);
+  ++number_;
   return block;
 }
 
@@ -241,23 +261,32 @@ bool Listening::lacks(double until) const {
   return stream_.time_of(sounded_until_) < until;
 }
 
+PingRecord Listening::sound_in(SessionState& session, const Sent& ping,
+                               const Window& window) const {
+  const auto simulator = session.simulator_of(session.live.of(window.changes));
+  const std::int64_t first = stream_.nearest_sample(ping.sent.time);
+  return simulator->sound(ping.ping, ping.sent, {},
+                          {.from = static_cast<double>(window.from - first) / rate_,
+                           .to = static_cast<double>(window.to - first) / rate_});
+}
+
 void Listening::prepare(SessionState& session, double until) {
   for (Sent& ping : sent_)
     while (!ping.pending.empty() && stream_.time_of(ping.pending.front().from) < until) {
-      const Window& window = ping.pending.front();
-      const auto simulator = session.simulator_of(session.live.of(window.changes));
-      const std::int64_t first = stream_.nearest_sample(ping.sent.time);
-      const PingRecord sound =
-          simulator->sound(ping.ping, ping.sent, {},
-                           {.from = static_cast<double>(window.from - first) / rate_,
-                            .to = static_cast<double>(window.to - first) / rate_});
-      {
-        const std::lock_guard lock(mutex_);
-        stream_.replace(ping.ping, sound, std::max(window.from, stream_.position()), window.to);
-      }
-      ping.pending.erase(ping.pending.begin());
+      const PingRecord sound = sound_in(session, ping, ping.pending.front());
+      follow(ping, sound);
     }
   see_to_pending();
+}
+
+/// From now on a ping sounds as its first pending window has it.
+void Listening::follow(Sent& ping, const PingRecord& sound) {
+  const Window& window = ping.pending.front();
+  {
+    const std::lock_guard lock(mutex_);
+    stream_.replace(ping.ping, sound, std::max(window.from, stream_.position()), window.to);
+  }
+  ping.pending.erase(ping.pending.begin());
 }
 
 void Listening::change(SessionState& session, double time, bool strikes) {
@@ -274,13 +303,20 @@ void Listening::change(SessionState& session, double time, bool strikes) {
                                      [&](const Sent& sent) { return sent.ping == one.ping; });
       check_places(session.live.of(composed_for(*ping, time)).scenario, one.ping,
                    one.sent.transmitter, one.sent.time);
+      // One that begins before stays as long as it is: so its bits are those that it has where
+      // nobody knew of this change. What follows takes its place from here on.
       std::erase_if(ping->pending, [&](const Window& window) { return window.from >= from; });
-      if (!ping->pending.empty()) ping->pending.back().to = std::min(ping->pending.back().to, from);
       for (Window& step :
            steps(windows(*ping, std::max(from, one.first), one.end), std::max(from, one.first)))
         ping->pending.push_back(std::move(step));
     }
-    prepare(session, std::nextafter(time, time + 1.0));  // what is heard next, or it is refused
+    // What is heard next, or it is refused; if it is called off, nothing has changed.
+    std::vector<std::pair<Sent*, PingRecord>> made;
+    for (Sent& ping : sent_)
+      for (const Window& window : ping.pending)
+        if (window.from <= from) made.emplace_back(&ping, sound_in(session, ping, window));
+    for (const auto& [ping, sound] : made) follow(*ping, sound);
+    see_to_pending();
   } catch (...) {
     changes_.pop_back();
     sent_ = before;
@@ -296,12 +332,6 @@ std::vector<LiveStream::Sounding> Listening::sounding() const {
   return stream_.sounding();
 }
 
-double Listening::oldest() const {
-  double time = this->time();
-  for (const LiveStream::Sounding& one : sounding()) time = std::min(time, one.sent.time);
-  return time;
-}
-
 /// What no sound asks for any more.
 void Listening::forget() {
   const std::vector<LiveStream::Sounding> still = sounding();
@@ -309,7 +339,7 @@ void Listening::forget() {
     return std::none_of(still.begin(), still.end(),
                         [&](const auto& other) { return other.ping == one.ping; });
   });
-  const double before = oldest();
+  const double before = heard().oldest;
   while (changes_.size() > 1 && changes_[1].time <= before) changes_.erase(changes_.begin());
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -43,6 +44,13 @@ class Listening {
     std::shared_ptr<BlockSink> sink = {};
   };
 
+  /// How far it has been handed out. A command takes this once: blocks go on beside it.
+  struct Heard {
+    std::int64_t position = 0;  ///< the next sample
+    double time = 0.0;          ///< its time [s]
+    double oldest = 0.0;        ///< before that nothing that still sounds was sent or struck [s]
+  };
+
   /// \param begin  [s]
   Listening(std::shared_ptr<const PingSimulator> simulator, LiveScenario::Changes changes,
             double begin);
@@ -50,12 +58,13 @@ class Listening {
   [[nodiscard]] double rate() const noexcept { return rate_; }
   [[nodiscard]] std::int64_t position() const;
   [[nodiscard]] double time() const;  ///< of the next sample [s]
+  [[nodiscard]] Heard heard() const;
   /// A ping leaves at the sample next to its time.
   [[nodiscard]] double whole_samples(double time) const;
 
   /// From now on. What was not handed out before `from` is not any more. \param from  [s]
   void begin(const Blocks& blocks, double from);
-  void end();  ///< no more, until it begins again
+  std::int64_t end();  ///< no more, until it begins again \return the next sample
   /// None: nobody listens.
   [[nodiscard]] std::optional<Blocks> blocks() const;
   /// By whoever sends scheduled pings: all that leave before a time are in the stream [s].
@@ -64,7 +73,12 @@ class Listening {
   [[nodiscard]] bool is_prepared() const;
   /// The end of the next block [s].
   [[nodiscard]] double next_end() const;
-  [[nodiscard]] std::optional<Block> next();  ///< none: it is over
+  [[nodiscard]] bool is_over() const;  ///< nobody listens, or there is no next block
+  /// \param may  asked with the block's end [s]; a command that looks how far it is heard looks
+  /// before that, or after the block   \return none: it is over, or it may not be
+  [[nodiscard]] std::optional<Block> next(const std::function<bool(double end)>& may = [](double) {
+    return true;
+  });
 
   /// Adds a ping's sound. \param state  of the scenario for it, with what it has of its own
   /// \return its record, without pressure \throws InputError
@@ -81,8 +95,6 @@ class Listening {
   [[nodiscard]] bool sounds() const {
     return !sounding().empty();
   }  ///< whether any ping still does
-  /// Before that nothing that still sounds was sent or struck [s].
-  [[nodiscard]] double oldest() const;
 
  private:
   struct Change {
@@ -102,7 +114,11 @@ class Listening {
     LiveScenario::Changes own;         // sections that are its own
     std::vector<Window> pending = {};  // that it does not sound by so far
   };
+  [[nodiscard]] PingRecord sound_in(SessionState& session, const Sent& ping,
+                                    const Window& window) const;
+  void follow(Sent& ping, const PingRecord& sound);
   [[nodiscard]] LiveScenario::Changes composed_for(const Sent& ping, double time) const;
+  [[nodiscard]] std::int64_t end_of_next() const;  // under mutex_
   void see_to_pending();
   [[nodiscard]] std::vector<Window> steps(const std::vector<Window>& windows,
                                           std::int64_t from) const;

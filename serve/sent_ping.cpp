@@ -19,7 +19,9 @@ Answer send(SessionState& session, ServedPing served, const Transmission& sent,
   ++session.pings;
   session.latest_ping = std::max(session.latest_ping, sent.time);
   session.schedule.sent(sent, moved);
-  session.live.forget_before(listening.oldest() - tow_memory(state.scenario));
+  // The next one may be earlier than it was: what is heard waits for it.
+  listening.scheduled_until(session.schedule.next(session.live.state().scenario).time);
+  session.live.forget_before(session.heard->oldest - tow_memory(state.scenario));
   served.latency = std::max(0.0, session.clock() - due);
   session.latency.add(served.latency);
   std::vector<float> pulse;
@@ -36,12 +38,12 @@ Answer send_into_stream(SessionState& session, const Command& command, const Pin
   const SessionSettings& settings = session.settings;
   const double begin = session.clock();
   ServedPing served{.id = command.id};
-  const double heard = listening.time();
+  const double heard = session.heard->time;
   const bool by_the_clock = settings.pace.by_the_clock();
-  if (!request.time) {
-    if (by_the_clock) sent.time = session.acts.value_or(session.at(command.received));
-    sent.time = std::max(sent.time, heard);
-  }
+  // Whoever listens pings now, whatever the schedule has.
+  if (!request.time)
+    sent.time =
+        std::max(heard, session.acts.value_or(by_the_clock ? session.at(command.received) : heard));
   sent.time = listening.whole_samples(sent.time);
   if (sent.time < heard) {
     if (request.time && *request.time < heard)
@@ -64,22 +66,29 @@ Answer send_into_stream(SessionState& session, const Command& command, const Pin
   return send(session, std::move(served), sent, state, due, true, request.replica);
 }
 
+void send_scheduled_ping(SessionState& session) {
+  Transmission sent = session.schedule.next(session.live.state().scenario);
+  session.heard = session.listening->heard();
+  sent.time = session.listening->whole_samples(sent.time);
+  const bool late = sent.time < session.heard->time;  // it began before anybody listened
+  if (late) sent.time = session.heard->time;
+  const double due = session.settings.pace.by_the_clock()
+                         ? std::max(session.clock(), session.clock_at(sent.time))
+                         : session.clock();
+  Answer told = send(session, {.scheduled = true}, sent, session.live.state(), due, late, false);
+  if (session.settings.log)
+    session.settings.log->scheduled(session.number, session.heard->position, session.pings);
+  session.tell(std::move(told));
+}
+
 void send_scheduled(SessionState& session, double before) {
   for (;;) {
-    const Scenario& scenario = session.live.state().scenario;
-    Transmission sent = session.schedule.next(scenario);
+    const Transmission sent = session.schedule.next(session.live.state().scenario);
     if (sent.time >= before) {
       session.listening->scheduled_until(sent.time);
       return;
     }
-    const double heard = session.listening->time();
-    sent.time = session.listening->whole_samples(sent.time);
-    const bool late = sent.time < heard;  // the schedule began before anybody listened
-    if (late) sent.time = heard;
-    const double due = session.settings.pace.by_the_clock()
-                           ? std::max(session.clock(), session.clock_at(sent.time))
-                           : session.clock();
-    session.tell(send(session, {.scheduled = true}, sent, session.live.state(), due, late, false));
+    send_scheduled_ping(session);
   }
 }
 

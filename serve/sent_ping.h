@@ -10,8 +10,10 @@ namespace asdic::detail::serve {
 [[nodiscard]] Answer send_into_stream(SessionState& session, const Command& command,
                                       const PingRequest& request, Transmission sent);
 
-/// The same for all pings of the schedule that are due before a time, and were not sent; what is
-/// known of each is told.
+/// Sends the next ping of the schedule, and tells what is known of it.
+void send_scheduled_ping(SessionState& session);
+
+/// The same for all pings of the schedule that are due before a time, and were not sent.
 void send_scheduled(SessionState& session, double before);
 
 }  // namespace asdic::detail::serve

@@ -17,7 +17,6 @@ Session::Session(const SessionSettings& settings, std::function<double()> clock,
                  std::span<const AnyCommand> commands)
     : state_(settings, std::move(clock)), commands_(commands) {
   for (const AnyCommand& command : commands_) names_.push_back(command.name);
-  if (settings.log) number_ = settings.log->new_session();
 }
 
 Answer Session::greeting() const {
@@ -44,13 +43,20 @@ const AnyCommand& Session::known(const Command& command) const {
 
 void Session::log(const Command& command, double begun, bool ok) {
   if (state_.settings.log)
-    state_.settings.log->write(number_, command, state_.acts, state_.start, begun, state_.clock(),
-                               ok);
+    state_.settings.log->write(
+        state_.number, command,
+        {.start = state_.start,
+         .begun = begun,
+         .done = state_.clock(),
+         .acts = state_.acts,
+         .heard = state_.heard ? std::optional(state_.heard->position) : std::nullopt},
+        ok);
 }
 
 Answer Session::execute(const Command& command) {
   const double begun = state_.clock();
   state_.acts.reset();
+  if (state_.listening) state_.heard = state_.listening->heard();
   if (command.acts)
     state_.acts = command.acts;
   else if (state_.settings.pace.by_the_clock())  // while it is listened to: when its line came

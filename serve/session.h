@@ -50,7 +50,6 @@ class Session {
   SessionState state_;
   std::span<const AnyCommand> commands_;
   std::vector<std::string_view> names_;
-  int number_ = 0;  // in the log
 };
 
 /// A refusal as an answer. \param id  JSON

@@ -24,6 +24,7 @@ SessionState::SessionState(const SessionSettings& common, std::function<double()
     : settings(common),
       clock(std::move(seconds)),
       start(clock()),
+      number(settings.log ? settings.log->new_session() : 0),
       live(settings.scenario, settings.data, settings.limits),
       schedule(live.state().scenario),
       budget_(budget_of(scenario::read_document(settings.scenario.text, settings.scenario.path,
@@ -44,6 +45,17 @@ double SessionState::now() const {
   if (settings.pace.by_the_clock()) return at(clock());
   if (listening) return listening->time();
   return schedule.next(live.state().scenario).time;
+}
+
+void SessionState::end_listening() {
+  if (!listening || !listening->blocks()) return;
+  const std::int64_t position = listening->end();
+  if (!settings.log) return;
+  try {
+    settings.log->ended(number, position);
+  } catch (const RunError& error) {
+    settings.report(error.what());
+  }
 }
 
 std::shared_ptr<const PingSimulator> SessionState::simulator_of(LiveScenario::State state) {

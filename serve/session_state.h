@@ -65,6 +65,7 @@ class SessionState {
   const SessionSettings& settings;
   std::function<double()> clock;
   double start;  ///< of the session, on the clock
+  int number;    ///< of the session in the log
   LiveScenario live;
   PingSchedule schedule;
   int pings = 0;                   ///< done
@@ -72,6 +73,11 @@ class SessionState {
   /// Time of the scenario at which the command in hand acts: by the clock, or as a log says; none:
   /// the schedule has it [s].
   std::optional<double> acts;
+  /// How far the session was heard when the command in hand began, or the latest scheduled ping;
+  /// none: nobody has listened.
+  std::optional<Listening::Heard> heard;
+  /// A log is carried out again: what is heard goes as far as that says, and answers bring it.
+  bool replayed = false;
   LatencyLog latency;
   /// From the first `listen` on.
   std::unique_ptr<Listening> listening;
@@ -85,6 +91,8 @@ class SessionState {
   [[nodiscard]] double now() const;  ///< of the scenario; the same for all of a command [s]
   [[nodiscard]] double at(double clock) const;       ///< the scenario's time at a time of the clock
   [[nodiscard]] double clock_at(double time) const;  ///< and back; by the clock alone
+  /// It is not heard any more, before it was over: the log has where.
+  void end_listening();
   /// A simulator of a scenario, or the one that was made of it not long ago.
   std::shared_ptr<const PingSimulator> simulator_of(LiveScenario::State state);
   [[nodiscard]] const MemoryBudget& budget() const noexcept { return budget_; }

@@ -59,7 +59,8 @@ std::size_t SessionWorker::cancel(const std::optional<std::string>& id) {
   }
   if (!waiting.empty()) ways_.goes_on();
   const std::lock_guard lock(mutex_);
-  const bool this_one = current_ && current_->why == Why::no && meant(current_->id);
+  const bool a_command = current_ && !current_->id.empty();  // not what is made ahead
+  const bool this_one = a_command && current_->why == Why::no && meant(current_->id);
   if (this_one) call_off(Why::cancelled);
   return waiting.size() + (this_one ? 1 : 0);
 }
@@ -131,6 +132,11 @@ void SessionWorker::serve() {
   begun_ = true;
   ways_.goes_on();
   session.state().tell = [this](Answer answer) { tell(std::move(answer)); };
+  carry_out_all(session);
+  session.state().end_listening();
+}
+
+void SessionWorker::carry_out_all(Session& session) {
   std::jthread blocks;  // by the clock, of what is heard; it ends before the session does
   bool last = false;
   while (!last) {
@@ -310,10 +316,10 @@ void SessionWorker::make_ahead(Session& session) {
       });
       if (!refused) return;
       ways_.deliver(*refused);
-      listening.end();
+      state.end_listening();
     });
   } catch (const Interrupted&) {
-    listening.end();
+    state.end_listening();
   }
   done();
 }
@@ -351,10 +357,13 @@ void SessionWorker::hand_out(Session& session, const std::stop_token& over) {
     if (early > 0.0) {
       wait_for(
           std::min<std::chrono::duration<double>>(std::chrono::duration<double>(early), a_while));
-    } else if (!may_be_heard(state, end) || !listening.is_prepared() || ways_.behind()) {
+    } else if (!listening.is_prepared() || ways_.behind()) {
       wait_for(a_moment);
-    } else if (auto block = listening.next()) {
+    } else if (auto block = listening.next(
+                   [&](double until) { return until == end && may_be_heard(state, until); })) {
       ways_.deliver(block_answer(std::move(*block), std::max(0.0, engine_.clock() - due)));
+    } else if (listening.blocks()) {
+      wait_for(a_moment);
     }
   }
 }

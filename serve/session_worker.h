@@ -68,7 +68,7 @@ class SessionWorker {
   enum class Why { no, cancelled, too_long, out_of_time, closing };
   /// The command that is carried out, or waits to be.
   struct InHand {
-    std::string id;
+    std::string id;  ///< JSON; empty: it is no command, but what is made ahead of the clock
     std::stop_source off;
     Why why = Why::no;
     std::optional<double> since;  ///< it computes [s]
@@ -79,6 +79,7 @@ class SessionWorker {
 
   void run();
   void serve();
+  void carry_out_all(Session& session);
   void take(const Command& command, const SessionState& session);
   void done();
   std::optional<Command> next_command(Session& session);

@@ -69,7 +69,7 @@ int study_run(const StudyOptions& options, double silence, const study::mpi::Ses
   const std::string identity = session.shared(work.fingerprint.identity);
   status = together(session, [&] {
     if (identity != work.fingerprint.identity)
-      throw InputError({.where = options.path,
+      throw InputError({.where = options.paths.front(),
                         .got = "another study at rank " + std::to_string(session.rank()) +
                                " (identity " + work.fingerprint.identity + ")",
                         .expected = "the same files at all ranks (identity " + identity + ")"});
@@ -113,6 +113,7 @@ int run(int argc, char** argv) {
   program.add_command(
       "study", "Simulate the realisations of a Monte Carlo study, into one HDF5 file.",
       [&](const Command& command) {
+        command.add_option("STUDY", options.paths, "study file (TOML)").required();
         add_study_options(command, options);
         command
             .add_option(

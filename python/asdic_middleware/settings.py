@@ -3,11 +3,37 @@ parameters.
 """
 import math
 import shlex
-from dataclasses import fields
+from dataclasses import dataclass, field, fields
 
 from .quantities import Wrong, number, shown
-from .sonar import Settings
 from .tracker import TrackerSettings
+
+
+@dataclass
+class Settings:
+    """As the mission file or ROS's parameters have them."""
+
+    scenario: str = ""            # of an own server, and for sound paths
+    arguments: list = field(default_factory=list)  # of `asdic serve`, further ones
+    program: str = "asdic"
+    socket: str = ""              # of a running server, instead
+    tcp: int = 0
+    token_file: str = ""
+    pace: str = "clock"           # "clock": of the middleware; "fast": as soon as results are had
+    factor: float = 1.0           # how fast that clock goes
+    platform: str = ""            # the first, where there are several
+    array: str = ""
+    array_follows_heading: bool = False
+    delivery: str = "auto"        # "pings": the record of each; "listen": a stream; "none"
+    receiver: bool = True
+    receiver_options: list = field(default_factory=list)
+    most_detections: int = 50
+    block: float = 1.0            # of samples [s]
+    update: float = 1.0           # while listening, between changes [s]
+    folder: str = "asdic-data"
+    files_kept: int = 100         # pings whose files are kept
+    tracker: TrackerSettings = field(default_factory=TrackerSettings)
+
 
 # name → (field of Settings, kind or (low, high))
 NAMES = {

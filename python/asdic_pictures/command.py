@@ -253,6 +253,12 @@ def write_page(options) -> None:
     for name in ("format", "dpi", "theme", "only", "limits"):
         if getattr(options, name):
             raise InputError(f"--{name}", "--html beside it", "one of the two: a page has them all")
+    kind = filetype(options.file)
+    if kind in ("asdic study", "asdic comparison"):
+        from asdic_page import study_report
+        path = study_report.write(options.file, page.place(options.file, options.output), kind, options.force)
+        say(f"{path}: a report for a browser")
+        return
     with PingFile(options.file) as data:
         path = page.write(data, page.place(options.file, options.output), options.ping,
                           options.array, options.force)
@@ -272,6 +278,17 @@ def draw_study(options, wish: Wishes) -> None:
     for name, reason in study_pictures.left_out(study).items():
         if wish.wants(name):
             wish.leave_out(name, reason)
+
+
+def draw_studies(options, wish: Wishes) -> None:
+    """What studies differ by."""
+    from . import study_comparison, style
+
+    comparison = study_comparison.read(options.file)
+    wish.check_names(study_comparison.names_of(comparison))
+    with style.look(wish.theme):
+        for name, figure in study_comparison.draw(comparison, wish.only):
+            wish.write(api.tagged(figure, **comparison.tags), name, figure.name)
 
 
 def draw_comparison(options) -> None:
@@ -312,6 +329,9 @@ def run(argv=None) -> int:
         return 0
     if kind == "asdic study":
         draw_study(options, wish)
+        return 0
+    if kind == "asdic comparison":
+        draw_studies(options, wish)
         return 0
     if kind in KINDS:
         draw_result(options, wish)

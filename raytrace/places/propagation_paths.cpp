@@ -204,8 +204,9 @@ Arrivals PropagationPaths::search_plane(const Vec3& from, const Vec3& to, double
                 [&](const CycleNeed& need, const CyclesMaker& make) {
                   return memory_->remember(key(Kept::cycle_waves, need), make);
                 });
-      auto more =
-          diffracted_arrival(along_.environment(), from.z(), to.z(), range, frequency, found);
+      const OceanMemory kept{*memory_, identity_};
+      auto more = diffracted_arrival(along_.environment(), from.z(), to.z(), range, frequency,
+                                     found, &kept);
       if (more && std::abs(more->launch_elevation) <= limits.max_launch_angle)
         found.push_back(std::move(*more));
     }
@@ -261,12 +262,13 @@ Arrivals PropagationPaths::followed(std::span<const Arrival> known, const Vec3& 
   if (volume()) in_volume.emplace(*volume(), frequency);
   std::optional<RayTracer> tracer;
   if (!layered_ && !volume()) tracer.emplace(environment_of(plane(from, to)), frequency);
+  const OceanMemory kept{*memory_, identity_};
   Arrivals found;
   std::vector<const Arrival*> lost;  // over a map
   for (const Arrival& path : known) {
     std::optional<Arrival> same;
     if (path.kind == ArrivalKind::diffracted)
-      same = diffracted_arrival(along_.environment(), from.z(), to.z(), range, frequency);
+      same = diffracted_arrival(along_.environment(), from.z(), to.z(), range, frequency, &kept);
     else if (layered_)
       same = along_.follow(path, from.z(), to.z(), range, frequency, limits);
     else if (in_volume)

@@ -1,12 +1,11 @@
 #include "raytrace/waves/diffraction.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <complex>
+#include <memory>
 
 #include "core/units.h"
-#include "raytrace/parallel/parallel.h"
-#include "raytrace/parallel/stop.h"
 #include "raytrace/waves/water_window.h"
 
 namespace asdic::detail {
@@ -18,67 +17,75 @@ constexpr double nearest_shadow = 50.0;   // wavelengths: no shadow is nearer
 constexpr double faintest = 1e-3;         // of 1/r: the integral's own noise is 1e-5
 constexpr double faintest_beside = 0.01;  // of the rays
 constexpr double slowness_share = 0.02;   // by which slownesses may differ from 1/c
-constexpr double depth_step = 0.05;       // wavelengths
+constexpr std::size_t own_bytes = std::size_t{1} << 30;
 
-/// The pressure at a place and how it changes there.
-struct WaveAt {
-  Complex p = 0.0, along = 0.0;                ///< and ∂p/∂r
-  Complex by_source = 0.0, by_receiver = 0.0;  ///< ∂p/∂z of either end
+constexpr double finer_layers = 10.0;   // in phase: in the dark little is left of great waves
+constexpr double usual_speed = 1500.0;  // of sound [m/s]
+constexpr double blended = 0.005;       // of a range, below a step of the furthest
+
+/// What waves are at one place.
+struct WaveThere {
+  WaveAt wave;
+  double delay = 0.0;  ///< [s]
 };
 
-/// The water's own field at one range, of waves that no bottom returns.
+/// The water's own field between two depths, of waves that no bottom returns.
 class WaterborneField {
  public:
   WaterborneField(const Environment& ocean, double source_depth, double receiver_depth,
-                  double range)
-      : ocean_(ocean), source_(source_depth), receiver_(receiver_depth), range_(range) {
-    ocean_.bottom.material = ReflectionTable{{0.0, 0.5 * pi}, {0.0, 0.0}, {0.0, 0.0}};
-    ocean_.bottom.roughness = {};
-  }
+                  double frequency, const OceanMemory& memory)
+      : ocean_(ocean),
+        source_(source_depth),
+        receiver_(receiver_depth),
+        frequency_(frequency),
+        memory_(memory) {}
 
-  /// Whether two frequencies are.
-  [[nodiscard]] bool affordable(double frequency) const {
-    const WaveColumn column(ocean_, frequency, source_, std::span(&receiver_, 1));
-    const double steps =
-        double(column.layers()) * double(water_window(ocean_, column, frequency, range_).count);
-    return 2.0 * steps <= most_diffraction_steps;
-  }
-
-  /// \throws Interrupted
-  [[nodiscard]] WaveAt field(double frequency) const {
-    const double h = depth_step * ocean_.water.at(receiver_).c / frequency;
-    const std::array<double, rows> depths = {std::max(ocean_.surface.depth, receiver_ - h),
-                                             receiver_,
-                                             std::min(ocean_.bottom.depth, receiver_ + h)};
-    const WaveColumn column(ocean_, frequency, source_, depths);
-    const WaterWindow w = water_window(ocean_, column, frequency, range_);
-    constexpr std::size_t piece = 16;
-    std::vector<Complex> g(rows * w.count), by_source(rows * w.count);
-    in_parallel_chunks(w.count, piece, [&](std::size_t begin, std::size_t end) {
-      std::array<double, rows> growth{};
-      for (std::size_t j = begin; j < end; ++j) {
-        stop_point();
-        column.kernel(w.at(j), growth, std::span(g).subspan(rows * j, rows),
-                      std::span(by_source).subspan(rows * j, rows));
-      }
-    });
-    WaveAt sum;
-    for (std::size_t j = 0; j < w.count; ++j) {
-      const Complex xi = w.at(j), down = (g[rows * j + 2] - g[rows * j]) / (depths[2] - depths[0]);
-      const Complex f = w.factor(xi, range_);
-      sum.p += f * g[rows * j + 1];
-      sum.along += Complex(0.0, -1.0) * xi * f * g[rows * j + 1];
-      sum.by_source += f * by_source[rows * j + 1];
-      sum.by_receiver += f * down;
-    }
-    return sum;
+  /// Nothing where it is fainter than some amplitude. \throws Interrupted
+  [[nodiscard]] std::optional<WaveThere> at(double range, double least) const {
+    // Kernels are shared up to a furthest range. Before that is exceeded the next ones fade in, so
+    // that a path whose ends move has no jump: each has its own 1e-5.
+    const double furthest = furthest_in_step(range);
+    const double share = std::clamp((range / furthest - (1.0 - blended)) / blended, 0.0, 1.0);
+    const auto within = [&](double furthest_range) {
+      return std::abs(field(frequency_, furthest_range, range).p) > least;
+    };
+    if (!within(furthest)) return std::nullopt;
+    const WaveThere here = up_to(furthest, range);
+    if (!(share > 0.0)) return here;
+    const WaveThere next = up_to(furthest_in_step(1.01 * furthest), range);
+    const double smooth = share * share * (3.0 - 2.0 * share);
+    return WaveThere{here.wave.mixed_with(next.wave, smooth),
+                     (1.0 - smooth) * here.delay + smooth * next.delay};
   }
 
  private:
-  static constexpr std::size_t rows = 3;
+  [[nodiscard]] WaveAt field(double frequency, double furthest, double range) const {
+    const bool source_is_upper = source_ <= receiver_;
+    const WaterborneWaves::Need need{.frequency = frequency,
+                                     .cut_for = finer_layers * frequency_,
+                                     .upper = std::min(source_, receiver_),
+                                     .lower = std::max(source_, receiver_),
+                                     .furthest = furthest};
+    return memory_.memory
+        .remember(ExactKey(Kept::waterborne_waves, memory_.ocean, need),
+                  [&] { return std::make_shared<WaterborneWaves>(ocean_, need, memory_); })
+        ->at(range, source_is_upper);
+  }
 
-  Environment ocean_;
-  double source_, receiver_, range_;
+  /// The delay by a second frequency, so near that delays which differ are resolved.
+  [[nodiscard]] WaveThere up_to(double furthest, double range) const {
+    const WaveAt wave = field(frequency_, furthest, range);
+    const double about = range / ocean_.water.at(receiver_).c;
+    const double step = std::min(1.0, 0.25 / (slowness_share * furthest / usual_speed));
+    const std::complex<double> turned = std::conj(wave.p) *
+                                        field(frequency_ + step, furthest, range).p *
+                                        std::polar(1.0, std::fmod(step * about, 1.0) * 2.0 * pi);
+    return {wave, about - std::arg(turned) / (2.0 * pi * step)};
+  }
+
+  const Environment& ocean_;
+  double source_, receiver_, frequency_;
+  const OceanMemory& memory_;
 };
 
 /// Elevation of travel at a depth, positive up, of a slowness [s/m]. \param down  downward flux
@@ -95,23 +102,22 @@ double wavenumber(Complex p, Complex slope) {
 /// \param least  amplitude below which there is nothing
 std::optional<Arrival> louder_arrival(const Environment& ocean, double source_depth,
                                       double receiver_depth, double range, double frequency,
-                                      double least) {
+                                      double least, const OceanMemory* kept) {
   const double c = ocean.water.at(receiver_depth).c;
   if (range * frequency < nearest_shadow * c) return std::nullopt;
-  const WaterborneField there(ocean, source_depth, receiver_depth, range);
-  if (!there.affordable(frequency)) return std::nullopt;
-  const WaveAt wave = there.field(frequency);
-  if (!(std::abs(wave.p) > std::max(least, faintest / range))) return std::nullopt;
-
-  // A second frequency, so near that delays which differ are resolved.
-  const double about = range / c, step = std::min(1.0, 0.25 / (slowness_share * about));
-  const Complex turned = std::conj(wave.p) * there.field(frequency + step).p *
-                         std::polar(1.0, std::fmod(step * about, 1.0) * 2.0 * pi);
+  if (!diffraction_is_affordable(ocean, range, frequency, kept)) return std::nullopt;
+  PropagationMemory own(own_bytes);
+  const OceanMemory alone{own};
+  const WaterborneField there(ocean, source_depth, receiver_depth, frequency,
+                              kept != nullptr ? *kept : alone);
+  const auto found = there.at(range, std::max(least, faintest / range));
+  if (!found) return std::nullopt;
+  const WaveAt& wave = found->wave;
   const double slowness = wavenumber(wave.p, wave.along) / (2.0 * pi * frequency);
 
   Arrival path;
   path.kind = ArrivalKind::diffracted;
-  path.delay = about - std::arg(turned) / (2.0 * pi * step);
+  path.delay = found->delay;
   path.amplitude = wave.p * std::polar(1.0, 2.0 * pi * std::fmod(frequency * path.delay, 1.0));
   path.spreading = std::abs(wave.p);
   path.horizontal_slowness = slowness;
@@ -128,26 +134,35 @@ std::optional<Arrival> louder_arrival(const Environment& ocean, double source_de
 
 }  // namespace
 
-bool diffraction_is_affordable(const Environment& ocean, double source_depth, double receiver_depth,
-                               double range, double frequency) {
-  return WaterborneField(ocean, source_depth, receiver_depth, range).affordable(frequency);
-}
-
-std::optional<Arrival> diffracted_arrival(const Environment& ocean, double source_depth,
-                                          double receiver_depth, double range, double frequency) {
-  return louder_arrival(ocean, source_depth, receiver_depth, range, frequency, 0.0);
+bool diffraction_is_affordable(const Environment& ocean, double range, double frequency,
+                               const OceanMemory* kept) {
+  const auto make = [&] { return std::make_shared<WaterColumn>(ocean, frequency, frequency); };
+  const auto water =
+      kept == nullptr ? make()
+                      : kept->memory.remember(
+                            ExactKey(Kept::water_column, kept->ocean, frequency, frequency), make);
+  const WaveColumn& column = water->column();
+  const double steps =
+      double(column.layers()) * double(water_window(ocean, column, frequency, range).count);
+  return 2.0 * steps <= most_diffraction_steps;
 }
 
 std::optional<Arrival> diffracted_arrival(const Environment& ocean, double source_depth,
                                           double receiver_depth, double range, double frequency,
-                                          const Arrivals& rays) {
+                                          const OceanMemory* kept) {
+  return louder_arrival(ocean, source_depth, receiver_depth, range, frequency, 0.0, kept);
+}
+
+std::optional<Arrival> diffracted_arrival(const Environment& ocean, double source_depth,
+                                          double receiver_depth, double range, double frequency,
+                                          const Arrivals& rays, const OceanMemory* kept) {
   double power = 0.0;
   for (const Arrival& ray : rays) {
     if (ray.bottom_bounces == 0) return std::nullopt;
     power += std::norm(ray.amplitude);
   }
   return louder_arrival(ocean, source_depth, receiver_depth, range, frequency,
-                        faintest_beside * std::sqrt(power));
+                        faintest_beside * std::sqrt(power), kept);
 }
 
 }  // namespace asdic::detail

@@ -3,6 +3,7 @@
 
 #include "raytrace/ocean/arrivals.h"
 #include "raytrace/ocean/environment.h"
+#include "raytrace/waves/waterborne.h"
 
 namespace asdic::detail {
 
@@ -14,20 +15,25 @@ namespace asdic::detail {
 ///
 /// Nothing where a ray gets there, where the sound is 40 dB under the rays that touch the bottom or
 /// 60 dB under spherical spreading, and where it would take more than `most_diffraction_steps`.
-/// \param ocean  is_layered()   \param rays  that were found
+///
+/// What places share is kept: an arrival nearby costs microseconds (waterborne.h).
+/// \param ocean  is_layered()   \param rays  that were found   \param kept  where what places have
+/// in common is kept; null: nowhere
 [[nodiscard]] std::optional<Arrival> diffracted_arrival(const Environment& ocean,
                                                         double source_depth, double receiver_depth,
                                                         double range, double frequency,
-                                                        const Arrivals& rays);
+                                                        const Arrivals& rays,
+                                                        const OceanMemory* kept = nullptr);
 
 /// The same whatever rays there are, for a path that is followed.
 [[nodiscard]] std::optional<Arrival> diffracted_arrival(const Environment& ocean,
                                                         double source_depth, double receiver_depth,
-                                                        double range, double frequency);
+                                                        double range, double frequency,
+                                                        const OceanMemory* kept = nullptr);
 
 /// Whether it is computed at all, or too dear. \param range  [m]
-[[nodiscard]] bool diffraction_is_affordable(const Environment& ocean, double source_depth,
-                                             double receiver_depth, double range, double frequency);
+[[nodiscard]] bool diffraction_is_affordable(const Environment& ocean, double range,
+                                             double frequency, const OceanMemory* kept = nullptr);
 
 /// Layers times wavenumbers of one arrival: a second of one core.
 inline constexpr double most_diffraction_steps = 3e6;

@@ -16,6 +16,8 @@ using Complex = std::complex<double>;
 
 constexpr double turn_phase = 0.002;  // that a layer may be off by where a wave turns in it [rad]
 constexpr double thinnest = 0.01;     // layer of our own making [m]
+constexpr double beyond_decay =
+    40.0;  // there and back again 700 dB: what is beyond is nothing [Np]
 constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 
 /// Of (ω/c)².
@@ -100,7 +102,7 @@ WaveColumn::WaveColumn(const Environment& environment, double frequency, double 
   std::sort(cuts.begin(), cuts.end());
   cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
   edges_.push_back(top);
-  for (std::size_t i = 1; i < cuts.size(); ++i) cut(cuts[i - 1], cuts[i]);
+  for (std::size_t i = 1; i < cuts.size(); ++i) cut(cuts[i - 1], cuts[i], omega_);
   const auto edge = [&](double z) {
     return std::size_t(std::lower_bound(edges_.begin(), edges_.end(), z) - edges_.begin());
   };
@@ -112,16 +114,36 @@ WaveColumn::WaveColumn(const Environment& environment, double frequency, double 
                    [&](std::size_t a, std::size_t b) { return edge_of_[a] < edge_of_[b]; });
   while (!order_.empty() && edge_of_[order_.back()] == none) order_.pop_back();
   if (!edge_of_.empty() && edge_of_.front() != none) slowest_edge_ = slowest_edge();
+  find_wavenumbers();
+}
+
+WaveColumn::WaveColumn(const Environment& environment, double frequency, double cut_for)
+    : environment_(environment),
+      frequency_(frequency),
+      omega_(2.0 * pi * frequency),
+      loss_(attenuation_np_per_m(environment, frequency)) {
+  const double top = environment.surface.depth, bottom = environment.bottom.depth;
+  std::vector<double> cuts = {top, bottom};
+  for (const double z : environment.water.depths())
+    if (z > top && z < bottom) cuts.push_back(z);
+  std::sort(cuts.begin(), cuts.end());
+  cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
+  edges_.push_back(top);
+  for (std::size_t i = 1; i < cuts.size(); ++i) cut(cuts[i - 1], cuts[i], 2.0 * pi * cut_for);
+  find_wavenumbers();
+}
+
+void WaveColumn::find_wavenumbers() {
   largest_ = 0.0;
   smallest_ = std::numeric_limits<double>::infinity();
   for (const double z : edges_) {
-    const double k = omega_ / environment.water.at(z).c;
+    const double k = omega_ / environment_.water.at(z).c;
     largest_ = std::max(largest_, k);
     smallest_ = std::min(smallest_, k);
   }
 }
 
-void WaveColumn::cut(double from, double to) {
+void WaveColumn::cut(double from, double to, double omega) {
   double z = from;
   while (z < to) {
     // Just inside, where the law of this piece holds.
@@ -129,8 +151,8 @@ void WaveColumn::cut(double from, double to) {
       const double margin = 1e-9 * (to - from);
       return environment_.water.at(std::clamp(depth, from + margin, to - margin));
     };
-    double h = thickness_at(at(z), omega_);
-    h = std::min({h, to - z, thickness_at(at(z + std::min(h, to - z)), omega_)});
+    double h = thickness_at(at(z), omega);
+    h = std::min({h, to - z, thickness_at(at(z + std::min(h, to - z)), omega)});
     const double next = z + 1.01 * h >= to ? to : z + h;
     layers_.push_back(layer(z, next));
     edges_.push_back(next);
@@ -208,6 +230,68 @@ WaveColumn::AtDepths WaveColumn::solutions(Complex xi) const noexcept {
     follow(wave, layer.k2[1] - xi2, layer.k2[0] - xi2, layer.thickness);
   }
   return at;
+}
+
+/// Whether a wave dies out in a layer. \param decay  is added to, a bound from below [Np]
+bool WaveColumn::fades(std::size_t layer, double xi, double& decay) const noexcept {
+  const WaveLayer& l = layers_[layer];
+  const double least = xi * xi - std::max(l.k2[0].real(), l.k2[1].real());
+  if (least > 0.0) decay += l.thickness * std::sqrt(least);
+  return least > 0.0;
+}
+
+DepthWave WaveColumn::above(Complex xi, std::size_t edge) const noexcept {
+  const Complex xi2 = xi * xi;
+  std::size_t first = edge;
+  for (double decay = 0.0; first > 0 && decay < beyond_decay; --first)
+    if (!fades(first - 1, xi.real(), decay)) decay = 0.0;
+  const Complex q = layers_[first].k2[0] - xi2;
+  DepthWave wave = first == 0 ? beside(environment_.surface, xi, layers_.front().k2[0])
+                              : DepthWave{1.0, Complex(0.0, 1.0) * vertical_wavenumber(q)};
+  for (; first < edge; ++first)
+    follow(wave, layers_[first].k2[0] - xi2, layers_[first].k2[1] - xi2, layers_[first].thickness);
+  return wave;
+}
+
+DepthWave WaveColumn::below(Complex xi, std::size_t edge) const noexcept {
+  const Complex xi2 = xi * xi;
+  std::size_t first = edge;
+  for (double decay = 0.0; first < layers_.size() && decay < beyond_decay; ++first)
+    if (!fades(first, xi.real(), decay)) decay = 0.0;
+  DepthWave wave = beside(environment_.bottom, xi, layers_.back().k2[1]);
+  if (first < layers_.size())
+    wave = {1.0, Complex(0.0, 1.0) * vertical_wavenumber(layers_[first].k2[0] - xi2)};
+  for (; first > edge; --first) {
+    const WaveLayer& layer = layers_[first - 1];
+    follow(wave, layer.k2[1] - xi2, layer.k2[0] - xi2, layer.thickness);
+  }
+  return wave;
+}
+
+std::size_t WaveColumn::layer_at(double depth) const noexcept {
+  const auto next = std::upper_bound(edges_.begin(), edges_.end(), depth);
+  const auto edge = std::max<std::ptrdiff_t>(next - edges_.begin() - 1, 0);
+  return std::min(std::size_t(edge), layers_.size() - 1);
+}
+
+void WaveColumn::descend(DepthWave& wave, Complex xi, std::size_t edge, double depth) const {
+  const Complex xi2 = xi * xi;
+  for (; edge < layers_.size() && edges_[edge] < depth; ++edge) {
+    const WaveLayer& layer = layers_[edge];
+    const double down = std::min(depth - edges_[edge], layer.thickness);
+    const Complex slope = (layer.k2[1] - layer.k2[0]) / layer.thickness;
+    follow(wave, layer.k2[0] - xi2, layer.k2[0] + slope * down - xi2, down);
+  }
+}
+
+void WaveColumn::ascend(DepthWave& wave, Complex xi, std::size_t edge, double depth) const {
+  const Complex xi2 = xi * xi;
+  for (; edge > 0 && edges_[edge] > depth; --edge) {
+    const WaveLayer& layer = layers_[edge - 1];
+    const double up = std::min(edges_[edge] - depth, layer.thickness);
+    const Complex slope = (layer.k2[1] - layer.k2[0]) / layer.thickness;
+    follow(wave, layer.k2[1] - xi2, layer.k2[1] - slope * up - xi2, up);
+  }
 }
 
 void WaveColumn::kernel(Complex xi, std::span<double> growth, std::span<Complex> g,

@@ -24,6 +24,10 @@ class WaveColumn {
   /// outside of the water there is no sound [m]
   WaveColumn(const Environment& environment, double frequency, double source_depth,
              std::span<const double> receivers);
+  /// One for all places: cut by the profile alone, so that the field is smooth in the depths of
+  /// both ends; these lie within layers. For above() and below().
+  /// \param cut_for  frequency whose layers it has, equal or nearly so
+  WaveColumn(const Environment& environment, double frequency, double cut_for);
 
   /// g(ξ) at every receiver [m]. Im ξ > 0, or some loss somewhere: else modes are poles.
   /// \param growth  [n] memory for it   \param g  [n]   \param by_source  [n] ∂g/∂z_s, or empty
@@ -40,6 +44,17 @@ class WaveColumn {
     Solutions source, receiver, slowest;
   };
   [[nodiscard]] AtDepths solutions(std::complex<double> xi) const noexcept;
+
+  /// What the surface lets be at an edge, its derivative downwards; and the bottom, upwards. Beyond
+  /// where a wave has died out (350 dB) nothing is looked at.
+  [[nodiscard]] DepthWave above(std::complex<double> xi, std::size_t edge) const noexcept;
+  [[nodiscard]] DepthWave below(std::complex<double> xi, std::size_t edge) const noexcept;
+  /// Follow the first down from an edge to a depth, and the second up.
+  void descend(DepthWave& wave, std::complex<double> xi, std::size_t edge, double depth) const;
+  void ascend(DepthWave& wave, std::complex<double> xi, std::size_t edge, double depth) const;
+  /// The layer that holds a depth, counted from the top.
+  [[nodiscard]] std::size_t layer_at(double depth) const noexcept;
+  [[nodiscard]] double edge(std::size_t number) const noexcept { return edges_[number]; }
 
   /// (ω/c − iα)² at one depth [1/m²] and its slope there, the mean of both sides of a corner
   /// [1/m³].
@@ -63,7 +78,9 @@ class WaveColumn {
   [[nodiscard]] double smallest_wavenumber() const noexcept { return smallest_; }
 
  private:
-  void cut(double from, double to);
+  void cut(double from, double to, double omega);
+  void find_wavenumbers();
+  [[nodiscard]] bool fades(std::size_t layer, double xi, double& decay) const noexcept;
   [[nodiscard]] std::size_t slowest_edge() const noexcept;
   [[nodiscard]] WaveLayer layer(double from, double to) const noexcept;
   [[nodiscard]] Squared squared(std::size_t edge) const noexcept;

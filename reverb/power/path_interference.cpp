@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/rotate_back.h"
 #include "reverb/fields/scattering_field.h"
@@ -40,21 +41,57 @@ PathInterference::PathInterference(std::span<const Vec3> phones, double frequenc
     level = std::max(level, phones_.back().head<2>().norm());
     reach_ = std::max(reach_, phones_.back().norm());
   }
-  if (azimuthally_symmetric) bessel_.emplace(2.0 * pi * level * most_apart + 1.0);
+  if (!azimuthally_symmetric) return;
+  bessel_.emplace(2.0 * pi * level * most_apart + 1.0);
+  // Phones whose phases are alike to 0.02 rad by any two paths are one ring at their mean place: of
+  // such a mean the error is the square of that, 1e-4.
+  constexpr double alike = 0.02 / (2.0 * pi * most_apart);
+  std::vector<Vec2> places;  // radius and height
+  for (const Vec3& x : phones_) places.emplace_back(x.head<2>().norm(), x.z());
+  std::sort(places.begin(), places.end(), [](const Vec2& a, const Vec2& b) {
+    return std::pair(a.y(), a.x()) < std::pair(b.y(), b.x());
+  });
+  std::vector<Vec2> first;  // of each ring
+  for (const Vec2& x : places) {
+    const auto near = std::find_if(first.begin(), first.end(), [&](const Vec2& other) {
+      return (x - other).cwiseAbs().maxCoeff() < alike;
+    });
+    const auto place = static_cast<std::size_t>(near - first.begin());
+    if (place == first.size()) {
+      first.push_back(x);
+      rings_.push_back({});
+    }
+    Ring& ring = rings_[place];
+    ring.radius += x.x();
+    ring.height += x.y();
+    ring.share += 1.0;
+  }
+  for (Ring& ring : rings_) {
+    ring.radius /= ring.share;
+    ring.height /= ring.share;
+    ring.share /= static_cast<double>(phones_.size());
+  }
 }
 
 std::complex<double> PathInterference::over_phones(const Vec3& apart) const noexcept {
   constexpr double alike = 1e-3;  // [rad]
   if (2.0 * pi * apart.norm() * reach_ < alike) return 1.0;
-  const double level = 2.0 * pi * apart.head<2>().norm();
   double re = 0.0, im = 0.0;
-  for (const Vec3& x : phones_) {
-    double one = bessel_ ? (*bessel_)(level * x.head<2>().norm()) : 1.0, other = 0.0;
-    rotate_back(bessel_ ? apart.z() * x.z() : apart.dot(x), one, other);
-    re += one;
-    im += other;
+  const auto add = [&](double amplitude, double cycles) {
+    double across = 0.0;
+    rotate_back(cycles, amplitude, across);
+    re += amplitude;
+    im += across;
+  };
+  if (!bessel_) {
+    for (const Vec3& x : phones_) add(1.0, apart.dot(x));
+    return std::complex<double>(re, im) / static_cast<double>(phones_.size());
   }
-  return std::complex<double>(re, im) / static_cast<double>(phones_.size());
+  // Over all bearings, ∫ e^{−iωr·cos β}dβ/2π = J₀(ωr).
+  const double level = 2.0 * pi * apart.head<2>().norm();
+  for (const Ring& ring : rings_)
+    add(ring.share * (*bessel_)(level * ring.radius), apart.z() * ring.height);
+  return {re, im};
 }
 
 /// What two sounds of one place are together, 2·Re⟨p_a p_b*⟩: a mean over the piece of ground, the

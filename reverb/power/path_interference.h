@@ -30,6 +30,12 @@ class PathInterference {
   double reach_ = 0.0;                 // of the furthest
   std::vector<Vec3> phones_;           // times the frequency
   std::optional<BesselTable> bessel_;  // of the mean over bearings
+  /// Phones that differ in bearing alone, for that mean.
+  struct Ring {
+    double radius = 0.0, height = 0.0;  // times the frequency
+    double share = 0.0;                 // of the phones
+  };
+  std::vector<Ring> rings_;
 };
 
 /// A piece of ground that sends sounds back, or of a layer.

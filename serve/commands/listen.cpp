@@ -4,9 +4,9 @@
 
 #include "core/text.h"
 #include "serve/answers.h"
+#include "serve/hand_out.h"
 #include "serve/listen_request.h"
 #include "serve/refusal.h"
-#include "serve/sent_ping.h"
 #include "serve/stream/block_sink.h"
 #include "sonar/scenario/sampling.h"
 
@@ -15,22 +15,18 @@ namespace {
 
 /// As fast as the client takes it, within the command.
 void hand_out_now(SessionState& session) {
-  Listening& listening = *session.listening;
-  for (;;) {
-    if (listening.blocks() && listening.blocks()->scheduled)
-      send_scheduled(session, listening.next_end());
-    if (listening.blocks()) listening.prepare(session, listening.next_end());
-    auto block = listening.next();
-    if (!block) break;
-    session.tell(block_answer(std::move(*block), 0.0));
+  try {
+    hand_out(session);
+  } catch (...) {
+    session.end_listening();
+    throw;
   }
-  session.tell({.line = listening_ended_line(listening.time())});
 }
 
 /// Where the samples go; none: to the client. \throws Refusal
 std::shared_ptr<BlockSink> sink_of(const SessionState& session, const ListenRequest& request,
                                    std::size_t samples) {
-  if (request.deliver == BlockDelivery::samples) return nullptr;
+  if (request.deliver == BlockDelivery::samples || session.replayed) return nullptr;
   const std::string word =
       in_quotes(words(request.deliver)[static_cast<std::size_t>(request.deliver)]);
   BlockOutlet* const outlet = request.deliver == BlockDelivery::udp ? session.settings.udp.get()
@@ -65,7 +61,7 @@ std::shared_ptr<BlockSink> sink_of(const SessionState& session, const ListenRequ
 
 Answer ListenCommand::run(SessionState& session, const Command& command) {
   const ListenRequest request = read_listen(command.fields);
-  const bool by_the_clock = session.settings.pace.by_the_clock();
+  const bool goes_on = session.settings.pace.by_the_clock() || session.replayed;
   if (request.stop) {
     if (!session.listening)
       throw Refusal("value", refusal_text("stop", "nobody that listens", "listen before"));
@@ -73,7 +69,7 @@ Answer ListenCommand::run(SessionState& session, const Command& command) {
     return {.line = listen_line(command.id, session.live.state().scenario,
                                 session.listening->time(), 0)};
   }
-  if (!by_the_clock && !request.seconds)
+  if (!goes_on && !request.seconds)
     throw Refusal("value",
                   refusal_text("seconds", "none", "how long, with --pace fast: there is no clock"));
   if (session.listening && session.listening->blocks())
@@ -97,7 +93,7 @@ Answer ListenCommand::run(SessionState& session, const Command& command) {
   listening.begin(blocks, now);
   Answer answer{.line = listen_line(command.id, session.live.state().scenario, listening.time(),
                                     blocks.samples)};
-  if (!by_the_clock) answer.then = [&session] { hand_out_now(session); };
+  if (!goes_on) answer.then = [&session] { hand_out_now(session); };
   return answer;
 }
 

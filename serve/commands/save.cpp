@@ -73,6 +73,8 @@ Answer SaveCommand::run(SessionState& session, const Command& command) {
   const int ping = session.pings + 1;
   Transmission next = session.schedule.next(scenario);
   if (session.settings.pace.by_the_clock()) next.time = session.now();
+  if (session.heard)
+    next.time = session.listening->whole_samples(std::max(next.time, session.heard->time));
   TomlValue document = session.live.document();
   const std::filesystem::path& path = session.settings.scenario.path;
   scenario::make_files_absolute(document, path.parent_path());

@@ -34,7 +34,7 @@ bool strikes(const TomlValue& fields) {
 /// Of what is heard from a time on; all of it, or nothing.
 Answer update_stream(SessionState& session, const Command& command) {
   Listening& listening = *session.listening;
-  const double heard = listening.time();
+  const double heard = session.heard->time;
   const std::optional<double> said = number_said(command.fields, "time");
   const auto refuse = [&](double least, const char* why) {
     throw Refusal("value",
@@ -46,8 +46,8 @@ Answer update_stream(SessionState& session, const Command& command) {
   double time = heard;
   if (said)
     time = *said;
-  else if (session.settings.pace.by_the_clock())
-    time = std::max(heard, session.now());
+  else if (session.acts)
+    time = std::max(heard, *session.acts);
   time = std::max(time, session.live.changed());
   const LiveScenario before = session.live;
   const std::size_t targets = before.state().scenario.targets.size();
@@ -60,7 +60,7 @@ Answer update_stream(SessionState& session, const Command& command) {
     session.live = before;
     throw;
   }
-  session.live.forget_before(listening.oldest() - tow_memory(before.state().scenario));
+  session.live.forget_before(session.heard->oldest - tow_memory(before.state().scenario));
   // Streams of reverberation are known by their Doppler factors, which another course changes.
   const bool drawn_anew = command.fields.find("platform") != nullptr &&
                           before.state().scenario.reverberation.enabled && listening.sounds();

@@ -7,6 +7,7 @@
 #include "sonar/echoes/one_leg.h"
 #include "sonar/paths/moving_paths.h"
 #include "sonar/paths/plane_wave.h"
+#include "sonar/paths/wave_moments.h"
 #include "sonar/scenario/carried.h"
 #include "sonar/scenario/sampling.h"
 
@@ -64,7 +65,9 @@ std::optional<DelayCurve> curve_of(const EchoContext& context, const Kinematics&
   if (phase < negligible_phase && path.source_course_changes.empty() &&
       path.array_course_changes.empty())
     return std::nullopt;
-  return delay_curve(pulse_moments(path), received, Vec3::Zero(), highest, aperture);
+  const bool by_waves = met.path.kind == ArrivalKind::diffracted;
+  return delay_curve(by_waves ? wave_moments(path) : pulse_moments(path), received, Vec3::Zero(),
+                     highest, aperture);
 }
 
 /// The blast at one phone, or at the reference point for all of them.

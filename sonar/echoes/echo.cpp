@@ -17,6 +17,7 @@
 #include "sonar/echoes/target_response.h"
 #include "sonar/paths/moving_paths.h"
 #include "sonar/paths/plane_wave.h"
+#include "sonar/paths/wave_moments.h"
 #include "sonar/scenario/carried.h"
 #include "sonar/scenario/sampling.h"
 
@@ -442,7 +443,10 @@ class EchoFinder {
         key,
         [&] {
           const int before = legs();
-          auto made = std::make_shared<Moments>(Moments{.along = pulse_moments(path)});
+          const bool by_waves = pair.there.path.kind == ArrivalKind::diffracted ||
+                                pair.home.path.kind == ArrivalKind::diffracted;
+          auto made = std::make_shared<Moments>(
+              Moments{.along = by_waves ? wave_moments(path) : pulse_moments(path)});
           made->legs = legs() - before;
           return made;
         },

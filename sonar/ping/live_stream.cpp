@@ -107,10 +107,12 @@ LiveStream::Place LiveStream::place() const {
 /// taken, nor on when it is.
 void LiveStream::make_piece(Stage& stage, std::int64_t number) const {
   if (stage.piece == number) return;
-  if (stage.piece < 0 || stage.piece + 1 != number) stage.carried.clear();
+  ReceiverElectronics::Carried carried;
+  if (stage.piece >= 0 && stage.piece + 1 == number) carried = stage.carried;
   stage.around = stage.simulator->surroundings(
       {.ping = stage.ping, .first = number * piece_, .samples = static_cast<std::size_t>(piece_)},
-      stage.carried);
+      carried);
+  stage.carried = std::move(carried);
   stage.piece = number;
 }
 
@@ -131,16 +133,17 @@ void LiveStream::skip_to(std::int64_t sample) {
 std::vector<float> LiveStream::take(std::size_t samples) {
   std::vector<float> rows(channels_ * samples * width_, 0.0F);
   const std::int64_t begin = position_, end = begin + static_cast<std::int64_t>(samples);
-  while (position_ < end) {
-    forget();
-    const std::int64_t number = position_ / piece_;
+  for (std::int64_t at = begin; at < end;) {
+    Stage& stage = stage_at(at);
+    const std::int64_t number = at / piece_;
     std::int64_t until = std::min(end, (number + 1) * piece_);
-    if (stages_.size() > 1) until = std::min(until, stages_[1].from);
-    make_piece(stages_.front(), number);
-    take_part(stages_.front(), position_, until, rows, samples,
-              static_cast<std::size_t>(position_ - begin));
-    position_ = until;
+    if (&stage != &stages_.back()) until = std::min(until, (&stage + 1)->from);
+    make_piece(stage, number);
+    take_part(stage, at, until, rows, samples, static_cast<std::size_t>(at - begin));
+    at = until;
   }
+  position_ = end;  // what is interrupted has taken nothing
+  forget();
   return rows;
 }
 

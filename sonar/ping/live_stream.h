@@ -52,7 +52,8 @@ class LiveStream {
   /// From a sample on, what surrounds the phones, and their electronics, are another simulator's.
   void surround(std::shared_ptr<const PingSimulator> simulator, std::int64_t from);
 
-  /// The next samples. \return [channels × samples × components] [Pa]
+  /// The next samples. Whatever it throws, none of them has been taken then.
+  /// \return [channels × samples × components] [Pa]
   [[nodiscard]] std::vector<float> take(std::size_t samples);
 
   /// What lies before a sample is not handed out.

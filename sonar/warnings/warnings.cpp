@@ -396,7 +396,7 @@ std::string left_out_diffraction(const Scenario& scenario) {
   for (const Target& target : scenario.targets) {
     const Vec3 place = target.track.at(0.0).position;
     const double range = separation(source, place).range;
-    if (diffraction_is_affordable(ocean, source.z(), place.z(), range, frequency)) continue;
+    if (diffraction_is_affordable(ocean, range, frequency)) continue;
     for (const Arrival& ray : EigenraySolver(ocean).find(source.z(), place.z(), range, frequency,
                                                          limits_of(scenario.propagation)))
       if (ray.bottom_bounces == 0) return "";

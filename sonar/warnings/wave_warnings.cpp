@@ -169,7 +169,7 @@ std::string dark_ground(const Scenario& scenario, const PropagationPaths& paths,
     for (const bool surface : {true, false}) {
       const double depth = surface ? top : floor;
       if (!(surface ? of_surface : of_bottom) || (surface ? above : below).in_the_water ||
-          !diffraction_is_affordable(ocean, source.z(), depth, cheaper * range, frequency))
+          !diffraction_is_affordable(ocean, cheaper * range, frequency))
         continue;
       const auto wave = diffracted_arrival(ocean, source.z(), depth, range, frequency);
       if (!wave) continue;

@@ -139,26 +139,32 @@ void RowsInHand::call_off() {
 }
 
 Deaths deaths_of(const std::filesystem::path& output) {
+  Deaths all;
+  for (const std::filesystem::path& journal : journals_of(output))
+    for (const auto& [index, deaths] : deaths_beside(journal, false))
+      all[index] = std::max(all[index], deaths);
+  return all;
+}
+
+Deaths deaths_beside(const std::filesystem::path& journal, bool anywhere) {
   using State = RowsInHand::State;
   Deaths all;
-  for (const std::filesystem::path& journal : journals_of(output)) {
-    const std::filesystem::path hand = hand_of(journal);
-    std::error_code error;
-    if (!std::filesystem::exists(hand, error)) continue;
-    constexpr std::size_t most = 1 << 20;
-    std::istringstream in(InputFile(hand, "what asdic study left there").read(most));
-    std::string line, boot;
-    if (!std::getline(in, line) || !line.starts_with(first_line) || !(in >> boot)) continue;
-    const bool same_boot = boot == boot_id();
-    char state = 0;
-    std::uint64_t index = 0;
-    int deaths = 0;
-    while (in >> state >> index >> deaths) {
-      if (state == static_cast<char>(State::empty)) continue;
-      const bool died = state == static_cast<char>(State::making) && same_boot;
-      const int now = std::clamp(deaths, 0, 1000) + (died ? 1 : 0);
-      if (now > 0) all[index] = std::max(all[index], now);
-    }
+  const std::filesystem::path hand = hand_of(journal);
+  std::error_code error;
+  if (!std::filesystem::exists(hand, error)) return all;
+  constexpr std::size_t most = 1 << 20;
+  std::istringstream in(InputFile(hand, "what asdic study left there").read(most));
+  std::string line, boot;
+  if (!std::getline(in, line) || !line.starts_with(first_line) || !(in >> boot)) return all;
+  const bool counts = anywhere || boot == boot_id();
+  char state = 0;
+  std::uint64_t index = 0;
+  int deaths = 0;
+  while (in >> state >> index >> deaths) {
+    if (state == static_cast<char>(State::empty)) continue;
+    const bool died = state == static_cast<char>(State::making) && counts;
+    const int now = std::clamp(deaths, 0, 1000) + (died ? 1 : 0);
+    if (now > 0) all[index] = std::max(all[index], now);
   }
   return all;
 }

@@ -62,12 +62,15 @@ class RowsInHand {
   std::vector<Slot> slots_;
   bool called_off_ = false;
 
-  friend Deaths deaths_of(const std::filesystem::path& output);
+  friend Deaths deaths_beside(const std::filesystem::path& journal, bool anywhere);
 };
 
 /// What processes left beside the journals of an output. Those that are still at work have their
 /// journals locked: whoever asks has opened them.
 [[nodiscard]] Deaths deaths_of(const std::filesystem::path& output);
+/// What a process left beside one journal. \param anywhere  it ran on whatever machine; else rows
+/// that were in hand when this machine went down are not held against them
+[[nodiscard]] Deaths deaths_beside(const std::filesystem::path& journal, bool anywhere);
 /// Takes the files away in which that stood, but for that of one journal.
 void forget_deaths(const std::filesystem::path& output, const std::filesystem::path& but);
 

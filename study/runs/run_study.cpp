@@ -217,28 +217,6 @@ void settle_suspects(const Work& work, const StudyRun& run, RowsInHand& hand, Jo
 
 namespace {
 
-/// Indices that are missing, one after the other.
-class Remaining {
- public:
-  explicit Remaining(IndexSet missing) : missing_(std::move(missing)) {}
-
-  std::optional<std::uint64_t> next() {
-    if (at_ >= missing_.ranges().size()) return {};
-    const IndexRange& range = missing_.ranges()[at_];
-    const std::uint64_t index = range.first + offset_++;
-    if (offset_ == range.size()) {
-      offset_ = 0;
-      ++at_;
-    }
-    return index;
-  }
-
- private:
-  IndexSet missing_;
-  std::size_t at_ = 0;
-  std::uint64_t offset_ = 0;
-};
-
 /// Tells of progress, but not for every row.
 class Teller {
  public:
@@ -272,6 +250,17 @@ InputError nothing_to_assemble(const std::filesystem::path& output) {
 }
 
 }  // namespace
+
+std::optional<std::uint64_t> Remaining::next() {
+  if (at_ >= missing_.ranges().size()) return {};
+  const IndexRange& range = missing_.ranges()[at_];
+  const std::uint64_t index = range.first + offset_++;
+  if (offset_ == range.size()) {
+    offset_ = 0;
+    ++at_;
+  }
+  return index;
+}
 
 void write_output(const Work& work, const StudyRun& run, const OrderedEstimate& estimate,
                   Journals& journals, OutputFile& output, StudyOutcome& outcome) {

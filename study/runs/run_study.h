@@ -46,7 +46,8 @@ struct StudyRun {
   bool force = false;          ///< even over a file that asdic did not write
   bool assemble_only = false;  ///< makes no rows: a file of those that are there
   bool retry = false;          ///< makes rows again that were skipped, or given up
-  std::chrono::duration<double> silence{120.0};  ///< of a rank of MPI that is then taken for dead
+  std::chrono::duration<double> silence{
+      120.0};  ///< of a rank of MPI or a worker that is then taken for dead
   Session session{};
   std::stop_token stop{};                           ///< leaves the realisations in hand
   std::function<void(const Progress&)> progress{};  ///< a few times a second
@@ -62,6 +63,7 @@ struct StudyOutcome {
   bool written = false;        ///< the output is there
   bool complete = false;       ///< and holds all of its range
   bool was_complete = false;   ///< already: nothing was done
+  bool by_another = false;     ///< another process of a crew has made the output
   IndexRange range{};          ///< of the output; shorter than asked for after --until
   bool stopped_early = false;  ///< by --until
   std::optional<Estimate> estimate{};
@@ -114,6 +116,17 @@ class Journals {
 /// \throws InputError naming the row that stops it; whatever a realisation throws
 void settle_suspects(const Work& work, const StudyRun& run, RowsInHand& hand, Journal& journal,
                      const std::function<void(Row&&)>& take);
+/// Indices that are missing, one after the other.
+class Remaining {
+ public:
+  explicit Remaining(IndexSet missing) : missing_(std::move(missing)) {}
+  std::optional<std::uint64_t> next();
+
+ private:
+  IndexSet missing_;
+  std::size_t at_ = 0;
+  std::uint64_t offset_ = 0;
+};
 /// realise(), with the row marked while it is in hand. \param hand  outlives it
 [[nodiscard]] Realise marked(const Realise& realise, RowsInHand& hand);
 /// The suspects of a range that are not made: what a run begins with.

@@ -1,16 +1,14 @@
 #include "study/runs/study_file_writer.h"
 
 #include <algorithm>
-#include <functional>
-#include <numeric>
-
-#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <set>
-#include "core/error.h"
 
-#include "study/runs/study_file_writer.h"
+#include "core/error.h"
+#include "study/runs/summary_writer.h"
 
 // The rows of a study's file, and the file as a whole.
 namespace asdic::detail::study {
@@ -39,7 +37,7 @@ void StudyFileWriter::write_table() {
     const Column& c = table.columns[i];
     const std::string path = "table/" + c.name;
     column<double>(path, table.values[i], std::numeric_limits<double>::quiet_NaN());
-    describe_column(path, c);
+    describe_column(file_, path, c);
     file_.set_attribute(path, "role", c.role == Column::Role::input ? "input" : "measure");
     file_.attach_scales(path, {"index"});
   }
@@ -189,68 +187,11 @@ void StudyFileWriter::write_root() {
   text("scenario", fingerprint.scenario_text, "the scenario file, verbatim");
 }
 
-/// The dimension of a table's rows: its axis or, where it has several, one without values.
-/// \return the dataset that stands for it
-std::string StudyFileWriter::write_rows(const SummaryTable& table, const std::string& group) {
-  const auto has_column = [&](const std::string& name) {
-    return std::any_of(table.columns.begin(), table.columns.end(),
-                       [&](const Column& column) { return column.name == name; });
-  };
-  std::string name = table.axes.size() == 1 ? table.axes.front() : "cell";
-  const std::string path = group + "/";
-  if (table.axes.size() == 1) {
-    const auto axis = std::find_if(table.columns.begin(), table.columns.end(),
-                                   [&](const Column& column) { return column.name == name; });
-    const auto& values = table.values[static_cast<std::size_t>(axis - table.columns.begin())];
-    file_.write<double>(path + name, values, {values.size()});
-    file_.make_scale(path + name, name);
-    return path + name;
-  }
-  while (has_column(name)) name += '_';
-  file_.make_dimension(path + name, table.values.empty() ? 0 : table.values.front().size());
-  describe(file_, path + name, "no values: a row for each of the axes' combinations");
-  return path + name;
-}
-
-/// CF's list of what else tells where a value belongs.
-void StudyFileWriter::write_coordinates(const SummaryTable& table, const std::string& group) {
-  std::vector<std::string> others = table.edges;
-  if (table.axes.size() > 1) others.insert(others.begin(), table.axes.begin(), table.axes.end());
-  std::string names;
-  for (const std::string& name : others) names += (names.empty() ? "" : " ") + name;
-  if (names.empty()) return;
-  for (const Column& column : table.columns)
-    if (std::find(others.begin(), others.end(), column.name) == others.end() &&
-        std::find(table.axes.begin(), table.axes.end(), column.name) == table.axes.end())
-      file_.set_attribute(group + "/" + column.name, "coordinates", names);
-}
-
 void StudyFileWriter::write_summary() {
-  const Summary& summary = results_.summary;
-  file_.make_group("summary");
-  file_.set_attribute("summary", "confidence", summary.confidence);
-  file_.set_attribute("summary", "proportion_interval", summary.proportion_interval);
-  file_.set_attribute("summary", "intervals", summary.intervals);
-  for (const SummaryTable& table : summary.tables) {
-    const std::string group = "summary/" + table.name;
-    file_.make_group(group);
-    file_.set_attribute(group, "title", table.title);
-    if (!table.intervals.empty()) file_.set_attribute(group, "intervals", table.intervals);
-    std::vector<std::string> order;
-    const std::string rows = write_rows(table, group);
-    for (std::size_t i = 0; i < table.columns.size(); ++i) {
-      const std::string path = group + "/" + table.columns[i].name;
-      if (path != rows) {
-        file_.write<double>(path, table.values[i], {table.values[i].size()});
-        file_.attach_scales(path, {rows});
-      }
-      describe_column(path, table.columns[i]);
-      noted(path, table.values[i]);
-      order.push_back(table.columns[i].name);
-    }
-    write_coordinates(table, group);
-    if (!order.empty()) file_.set_attribute(group, "columns", order);
-  }
+  study::write_summary(file_, results_.summary,
+                       [&](const std::string& dataset, const std::vector<double>& values) {
+                         noted(dataset, values);
+                       });
 }
 
 void StudyFileWriter::write_manifest() {
@@ -294,7 +235,7 @@ void StudyFileWriter::write_run() {
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const std::string path = "run/reuse/" + table.columns[i].name;
     file_.write<double>(path, table.values[i], {table.values[i].size()});
-    describe_column(path, table.columns[i]);
+    describe_column(file_, path, table.columns[i]);
     file_.attach_scales(path, {"index"});
   }
 }

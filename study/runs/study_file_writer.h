@@ -34,8 +34,6 @@ class StudyFileWriter {
   void write_table();
   void write_series(const SeriesSource& series);
   void write_summary();
-  std::string write_rows(const SummaryTable& table, const std::string& group);
-  void write_coordinates(const SummaryTable& table, const std::string& group);
   void write_manifest();
   void write_run();
   void write_pressure(const SeriesSource& series, const Shape& row);
@@ -80,23 +78,14 @@ class StudyFileWriter {
     note(dataset, {}, digest.text());
   }
 
-  /// "dB re 1 µPa" is units "dB", reference "1 µPa": UDUNITS has no words for it.
-  void describe_column(const std::string& dataset, const Column& column) {
-    constexpr std::string_view re = " re ";
-    const auto at = std::min(column.unit.find(re), column.unit.size());
-    const std::string reference = column.unit.substr(std::min(at + re.size(), column.unit.size()));
-    describe(file_, dataset, column.meaning, column.unit.substr(0, at), {.reference = reference});
-    if (!column.labels.empty()) file_.set_attribute(dataset, "labels", column.labels);
-  }
-
   Hdf5File file_;
   const StudyResults& results_;
   const std::vector<CataloguePart>& catalogue_;
-  struct Noted {
+  struct Dataset {
     Shape shape;
     std::string sha256;
   };
-  std::map<std::string, Noted> noted_;
+  std::map<std::string, Dataset> noted_;
 };
 
 }  // namespace asdic::detail::study

@@ -9,7 +9,6 @@ the target; the clock.
 """
 import contextlib
 import json
-import os
 import subprocess
 import sys
 import tempfile
@@ -22,47 +21,15 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[3]
 sys.path[:0] = [str(ROOT / "python"), str(ROOT / "tests/support")]
 from asdic_client import Client, Refused  # noqa: E402
+from checks import check  # noqa: E402
 from moosdb import SmallMoosDB, packet  # noqa: E402
+from served import ASDIC, sea  # noqa: E402
 
-ASDIC = str(Path(os.environ["ASDIC"]).resolve())
-SCENARIO = """seed = 5
-[environment]
-sound_speed = { kind = "isovelocity", speed = 1500.0 }
-[environment.bottom]
-depth = 1000.0
-kind = "rigid"
-[platform]
-position = [0.0, 0.0, 200.0]
-[transmitter]
-source_level_db = 200.0
-beamwidth_deg = 20.0
-[pulse]
-kind = "cw"
-frequency = 1000.0
-duration = 0.1
-[array]
-kind = "positions"
-positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]
-[[target]]
-name = "rock"
-position = [3000.0, 0.0, 500.0]
-strength_db = 10.0
-[noise]
-spectral_level_db = 40.0
-[propagation]
+SCENARIO = sea("seed = 5", """[propagation]
 max_surface_bounces = 1
-max_bottom_bounces = 1
-[pings]
-count = 3
-interval = 10.0
-recording_duration = 6.0
-samples = "baseband"
-"""
-
-
-def check(holds, law):
-    if not holds:
-        raise AssertionError(law)
+max_bottom_bounces = 1""", environment='sound_speed = { kind = "isovelocity", speed = 1500.0 }',
+               pulse='kind = "cw"\nfrequency = 1000.0\nduration = 0.1',
+               array='kind = "positions"\npositions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]')
 
 
 def fields(message):
@@ -425,6 +392,17 @@ def test_listening():
                 check(data.shape == (2, 5) and (data == k).all(), "their samples")
                 check(abs(head["time"] - blocks[0][0]["time"] - 0.05 * k) < 1e-5, "their times")
             check("ping" not in blocks[0][0], "a stream's block belongs to no ping")
+
+
+def test_not_to_be_listened():
+    """Where nothing can be listened to, since records begin later, each ping has its record, and that is told."""
+    with tempfile.TemporaryDirectory() as folder, SmallMoosDB(warp=4) as db, \
+            app(db, folder, "Scenario = sea.toml\nReceiver = no\nArguments = --set pings.recording_start=1.0"):
+        db.post("ACTIVE_SONAR_COMMAND", "")
+        db.wait("ACTIVE_SONAR_LATENCY")
+        said = db.wait("ACTIVE_SONAR_ERROR", lambda m: "each ping has its record" in m["text"])["text"]
+        check("recording.start" in said, said)
+        check(samples_of(db.of("ACTIVE_SONAR_SAMPLES")[0])[0]["ping"] == 1, "a ping's own block")
 
 
 def knows_listen(folder):

@@ -19,15 +19,11 @@ from asdic_middleware import mission, packets, quantities  # noqa: E402
 from asdic_middleware.moos_app import App  # noqa: E402
 from asdic_middleware.packets import Malformed  # noqa: E402
 from asdic_middleware.quantities import Wrong  # noqa: E402
+from checks import check  # noqa: E402
 from deep import DEEP  # noqa: E402
 
 SESSION = [line.split() for line in (ROOT / "tests/data/moos/session.txt").read_text().splitlines()
            if not line.startswith("#")]
-
-
-def check(holds, law):
-    if not holds:
-        raise AssertionError(law)
 
 
 def recorded(way):

@@ -19,12 +19,8 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[3]
 sys.path[:0] = [str(ROOT / "python"), str(ROOT / "tests/support")]
 import ros_messages  # noqa: E402
+from checks import check  # noqa: E402
 from moos_app import SCENARIO  # noqa: E402  the same sea
-
-
-def check(holds, law):
-    if not holds:
-        raise AssertionError(law)
 
 
 class Stamp:

@@ -24,15 +24,11 @@ ROOT = Path(__file__).resolve().parents[3]
 sys.path[:0] = [str(ROOT / "python"), str(ROOT / "tests/support")]
 import ros_messages  # noqa: E402
 from asdic_client import Client  # noqa: E402
+from checks import check  # noqa: E402
 from moos_app import SCENARIO  # noqa: E402  the same sea
+from served import ASDIC  # noqa: E402
 
-ASDIC = str(Path(os.environ["ASDIC"]).resolve())
 PACKAGES = "python3-rospy python3-rosmaster python3-genpy python3-nav-msgs python3-geometry-msgs"
-
-
-def check(holds, law):
-    if not holds:
-        raise AssertionError(law)
 
 
 @contextlib.contextmanager

@@ -14,16 +14,12 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[3]
 sys.path[:0] = [str(ROOT / "python"), str(ROOT / "tests/support")]
 from asdic_middleware.tracker import Tracker, TrackerSettings  # noqa: E402
+from checks import check  # noqa: E402
 from deep import DEEP  # noqa: E402
 
 INTERVAL, PINGS, SOUND = 40.0, 12, 1500.0
 OWN = np.array([3.0, -1.0])  # the sonar's velocity [m/s]
 RUNS = 400 if DEEP else 60
-
-
-def check(holds, law):
-    if not holds:
-        raise AssertionError(law)
 
 
 def received(rng, settings, state, time, own, mirror):

@@ -127,6 +127,15 @@ TEST(Listening, PingsByCommandAreHeardAsThoseOfTheSchedule) {
   for (std::size_t c = 0; c < channels; ++c) EXPECT_EQ(heard.rows[c], record[c]);
 }
 
+// The schedule has its next ping at 10 s: who listens pings when they say so.
+TEST(Listening, PingsWithoutATimeLeaveNow) {
+  Heard heard;
+  heard.listen(1.0);
+  EXPECT_EQ(heard(R"({"command": "ping"})")["time"], 1.0);
+  heard.listen(2.0);
+  EXPECT_EQ(heard(R"({"command": "ping"})")["time"], 3.0);
+}
+
 // The rock is 3000 m away: what leaves at 0 strikes it at 2 s, and comes back at 4 s. A change acts
 // from its sample on: that of what receives at once, that of what is struck on what was struck by
 // then (here to the sample after 2·t), that of the ocean with the next ping.
@@ -157,6 +166,24 @@ TEST(Listening, AChangeActsWhereAndWhenItHappens) {
   EXPECT_GT(louder, 3.95);  // the whole echo; before it, the rounding of a transform
   EXPECT_LT(louder, 4.05);
   EXPECT_GE(changed_at(R"("sound_speed": {"kind": "isovelocity", "speed": 1490})", rounding), 6.5);
+}
+
+// A change that is known beforehand changes nothing before it: not even the rounding of what a
+// change before it has made anew, in steps that end after it.
+TEST(Listening, AChangeThatIsKnownChangesNothingBefore) {
+  const auto heard_until = [](double known) {
+    Heard heard;
+    heard.listen(0.001);
+    heard(R"({"command": "ping"})");
+    heard.listen(1.0);
+    heard(R"({"command": "update", "time": 1.5, "array": {"heading_deg": 80}})");
+    if (known > 1.0) heard.listen(known - 1.0);
+    heard(R"({"command": "update", "time": 3.2, "array": {"heading_deg": 70}})");
+    heard.listen(5.0 - known);
+    return heard.rows;
+  };
+  const auto late = heard_until(3.0), beforehand = heard_until(1.0);
+  for (std::size_t c = 0; c < channels; ++c) EXPECT_EQ(beforehand[c], late[c]);
 }
 
 // A target that moves from 1.5 s on at 20 m/s is met at 2 s 10 m farther on, and 6.7 ms later.

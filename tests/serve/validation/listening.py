@@ -6,7 +6,6 @@ other without a gap; memory stays what it is after the first pings.
 
     ASDIC=build/ci/bin/asdic listening.py [SECONDS]      of the long run; default 60, ASDIC_DEEP=1: 86400
 """
-import os
 import sys
 import tempfile
 import time
@@ -15,50 +14,16 @@ from pathlib import Path
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[3]
-sys.path.insert(0, str(ROOT / "python"))
+sys.path[:0] = [str(ROOT / "python"), str(ROOT / "tests/support")]
 from asdic_client import Client, Refused  # noqa: E402
+from checks import check  # noqa: E402
+from deep import DEEP  # noqa: E402
+from served import ASDIC, resident, sea, server  # noqa: E402
 
-ASDIC = str(Path(os.environ["ASDIC"]).resolve())
-DEEP = os.environ.get("ASDIC_DEEP") == "1"
-SMALL = """title = "two pings overlap"
-seed = 5
-[environment]
-wind_speed = 8.0
-sound_speed = { kind = "isovelocity", speed = 1500.0 }
-[environment.bottom]
-depth = 1000.0
-kind = "rigid"
-[platform]
-position = [0.0, 0.0, 200.0]
-[transmitter]
-source_level_db = 200.0
-beamwidth_deg = 20.0
-[pulse]
-kind = "cw"
-frequency = 1000.0
-duration = 0.1
-window = "hann"
-[array]
-kind = "horizontal"
-phones = 4
-spacing = 0.75
-[[target]]
-name = "rock"
-position = [3000.0, 0.0, 500.0]
-strength_db = 10.0
-[noise]
-spectral_level_db = 40.0
-[pings]
-interval = 2.0
+SMALL = sea('title = "two pings overlap"\nseed = 5', pings="""interval = 2.0
 recording_duration = 5.0
 samples = "baseband"
-baseband_rate = 200.0
-"""
-
-
-def check(passed, what):
-    if not passed:
-        sys.exit(f"not so: {what}")
+baseband_rate = 200.0""")
 
 
 def joined(blocks):
@@ -80,7 +45,7 @@ def commands(client, begin):
 
 def by_the_clock(scenario):
     with Client.start(scenario, "--pace", "4", program=ASDIC) as client:
-        begin = np.ceil(4.0 * client.listen(block=0.125, seconds=20.0)["time"]) / 4.0 + 12.0  # whatever the machine does
+        begin = np.ceil(4.0 * client.listen(block=0.125, seconds=20.0)["time"]) / 4.0 + 12.0
         commands(client, begin)
         blocks = list(client.blocks())
         sound = joined(blocks)
@@ -124,11 +89,6 @@ def commands_without_a_time(scenario):
     print(f"now: a ping at {sent:.3f} s")
 
 
-def resident(client):
-    with open(f"/proc/{client.process.pid}/status") as status:
-        return int(next(line for line in status if line.startswith("VmRSS")).split()[1])
-
-
 def for_long(scenario, seconds):
     """A continuous sonar under way that turns every ten seconds."""
     with Client.start(scenario, program=ASDIC) as client:
@@ -140,8 +100,8 @@ def for_long(scenario, seconds):
             heard += 10.0
             client.update(platform={"heading_deg": heard % 360.0, "speed": 2.0}, array={"heading_deg": heard % 180.0})
             if after is None and heard >= min(60.0, seconds / 2.0):
-                after = resident(client)
-        grown = resident(client) - after
+                after = resident(client.process)
+        grown = resident(client.process) - after
         check(grown < 8192 + 0.1 * after, f"{grown} kB more after {heard} s")
         check(len(client.scheduled) >= min(1000, int(seconds / 2.0)), "pings of the schedule are told")
         print(f"{heard:.0f} s, {heard / (time.monotonic() - begun):.0f} times as fast as the clock: {after} kB after a "
@@ -204,6 +164,48 @@ def killed(scenario, folder):
     print(f"killed: {len(taken)} blocks were whole")
 
 
+def slow_readers(folder):
+    """What listeners do not take is bounded, of each and of all; whoever reads is served, and who reads again has
+    missed nothing. By the clock it is told how late it comes.
+    """
+    scenario, socket = folder / "many.toml", folder / "many.sock"
+    scenario.write_text(sea(array='kind = "horizontal"\nphones = 64\nspacing = 0.75', target="",
+                            pings='samples = "baseband"\nbaseband_rate = 1000.0\nrecording_duration = 1.0',
+                            more="[reverberation]\nenabled = false"))
+    limits = ("--limit", "answer_bytes=4000000", "--limit", "total_answer_bytes=8000000")
+    with server("--socket", str(socket), *limits, scenario=scenario) as (process, _):
+        deaf = [Client.unix(socket) for _ in range(4)]
+        for client in deaf:
+            client.listen(block=0.1, seconds=0.1)
+            list(client.blocks())
+        before = resident(process)
+        for client in deaf:
+            client.listen(block=0.1, seconds=300.0)  # 150 MB each
+        with Client.unix(socket) as other:
+            other.listen(block=0.1, seconds=10.1)
+            truth = np.concatenate([block.samples for block in other.blocks()], axis=1)
+        time.sleep(0.5)
+        grown = resident(process) - before
+        check(grown < 8000 + 40000, f"{grown} kB more for 8 MB of answers; 600 MB are asked for")
+        heard = [block for _, block in zip(range(200), deaf[0].blocks())]  # 10 MB: more than waited
+        check(np.array_equal(truth[:, 100:], np.concatenate([b.samples for b in heard[:100]], axis=1)), "the same bits")
+        check([b.number for b in heard] == list(range(1, 201)), "no block is missing")
+        for client in deaf:
+            client.close()
+    with Client.start(scenario, "--pace", "20", *limits, program=ASDIC) as client:
+        client.listen(block=0.1)
+        time.sleep(1.5)  # 15 MB
+        heard = []
+        for block in client.blocks():
+            heard.append(block)
+            if len(heard) == 400:
+                break
+    check([b.number for b in heard] == list(range(400)), "no block is missing")
+    late = max(b.behind for b in heard)
+    check(late > 0.5, f"{late} s late at most, though nobody read for 1.5 s")
+    print(f"slow readers: {grown} kB more with four that do not read; by the clock {late:.1f} s late, and told")
+
+
 def main():
     seconds = float(sys.argv[1]) if len(sys.argv) > 1 else (86400.0 if DEEP else 60.0)
     with tempfile.TemporaryDirectory() as name:
@@ -214,6 +216,7 @@ def main():
         commands_without_a_time(scenario)
         for_long(scenario, seconds)
         killed(scenario, folder)
+        slow_readers(folder)
     turns()
     print("listened to: all as it should be")
 

@@ -25,86 +25,22 @@ import h5py
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[3]
-sys.path.insert(0, str(ROOT / "python"))
+sys.path[:0] = [str(ROOT / "python"), str(ROOT / "tests/support")]
 from asdic_client import Client, Refused  # noqa: E402
+from checks import check  # noqa: E402
+from served import ASDIC, refused, resident, sea, server  # noqa: E402
 
-ASDIC = str(Path(os.environ["ASDIC"]).resolve())
-SCENARIO = """title = "SECRET"
-seed = 5
-[environment]
-wind_speed = 8.0
-sound_speed = { kind = "isovelocity", speed = 1500.0 }
-[environment.bottom]
-depth = 1000.0
-kind = "rigid"
-[platform]
-position = [0.0, 0.0, 200.0]
-[transmitter]
-source_level_db = 200.0
-elevations_deg = [0.0, 3.0]
-beamwidth_deg = 20.0
-[pulse]
-kind = "cw"
-frequency = 1000.0
-duration = 0.1
-window = "hann"
-[array]
-kind = "horizontal"
-phones = 4
-spacing = 0.75
-[[target]]
-name = "rock"
-position = [3000.0, 0.0, 500.0]
-velocity = [-3.0, 1.0, 0.0]
-strength_db = 10.0
-[noise]
-spectral_level_db = 40.0
-[reverberation]
+SCENARIO = sea("""title = "SECRET"
+seed = 5""", """[reverberation]
 azimuths = 8
 [propagation]
 max_surface_bounces = 1
-max_bottom_bounces = 1
-[pings]
-count = 3
-interval = 10.0
-recording_duration = 6.0
-samples = "baseband"
-"""
-
-
-def check(holds, law):
-    if not holds:
-        raise AssertionError(law)
-
-
-def rss(process):
-    """Memory that it has now [kB]."""
-    text = Path(f"/proc/{process.pid}/status").read_text()
-    return int(re.search(r"VmRSS:\s+(\d+)", text).group(1))
-
-
-@contextlib.contextmanager
-def server(*arguments, listens=1, **environment):
-    """→ process, what it said on standard error until it listened"""
-    process = subprocess.Popen([ASDIC, "serve", "sea.toml", *arguments], stdin=subprocess.DEVNULL,
-                               stderr=subprocess.PIPE, text=True,
-                               env={**os.environ, **environment})
-    said = ""
-    while said.count("listening on") < listens:
-        line = process.stderr.readline()
-        check(line, f"the server ended: {said}")
-        said += line
-    try:
-        yield process, said
-    finally:
-        process.send_signal(signal.SIGINT)
-        try:
-            process.wait(timeout=30)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            raise
-        process.stderr.close()
-        check(process.returncode == 0, f"exit status {process.returncode}")
+max_bottom_bounces = 1""", transmitter="""source_level_db = 200.0
+elevations_deg = [0.0, 3.0]
+beamwidth_deg = 20.0""", target="""name = "rock"
+position = [3000.0, 0.0, 500.0]
+velocity = [-3.0, 1.0, 0.0]
+strength_db = 10.0""")
 
 
 def reference():
@@ -112,16 +48,6 @@ def reference():
     subprocess.run([ASDIC, "ping", "sea.toml", "-q", "-o", "reference.h5"], check=True)
     with h5py.File("reference.h5") as file:
         return file["pressure"][...].view("<c8")[..., 0]
-
-
-def refused(code, work):
-    try:
-        work()
-    except Refused as error:
-        check(error.code == code, f"{error}, expected {code}")
-        check("SECRET" not in str(error), str(error))
-        return
-    raise AssertionError(f"not refused: {code}")
 
 
 def raw(end, data):
@@ -505,7 +431,7 @@ def slow_readers():
             ping = client.ping(deliver="samples")
             one = ping.samples.nbytes
             check(5e6 < one < 20e6, one)
-        before = rss(process)
+        before = resident(process)
         deaf = [Client.unix("sonar.sock", when_full="wait") for _ in range(6)]
         for client in deaf:
             for _ in range(8):
@@ -521,7 +447,7 @@ def slow_readers():
                     code = no.code
             check(code == "busy", "answers of 48 pings of 8 MB are kept")
         time.sleep(1.0)
-        after = rss(process)
+        after = resident(process)
         check(after - before < 110000, f"{before} kB, then {after} kB for at most 30 MB of answers")
         for client in deaf[1:]:
             client.close()
@@ -646,10 +572,10 @@ def does_not_grow(count):
             warm = max(50, count // 10)
             for i in range(warm):
                 step(i)
-            before = rss(process)
+            before = resident(process)
             for i in range(warm, warm + count):
                 step(i)
-            after = rss(process)
+            after = resident(process)
             last = client.quit()
         check(last["pings"] == warm + count, "no command is lost")
         # What the allocator keeps varies by some MB; a leak of 1 kB a ping is 10 MB in deep_check.
