@@ -34,7 +34,7 @@ std::optional<std::size_t> single_column(const Study& study, const Table& table,
   return std::nullopt;
 }
 
-void put(SummaryTable& to, const std::vector<double>& row) {
+void put_row(SummaryTable& to, const std::vector<double>& row) {
   for (std::size_t k = 0; k < row.size(); ++k) to.values[k].push_back(row[k]);
 }
 
@@ -146,15 +146,15 @@ std::vector<SummaryTable> saltelli_tables(const Study& study, const Table& table
           }
         if (x.size() >= 4) rank = rank_correlation(ranks(x), y, plan.confidence);
       }
-      put(made, {measure, static_cast<double>(i), first.blocks,
-                 static_cast<double>(values.size()) - first.blocks, rank.value, rank.low, rank.high,
-                 first.value, first.error, first.interval.low, first.interval.high, total.value,
-                 total.interval.low, total.interval.high, left.value, left.interval.low,
-                 left.interval.high});
+      put_row(made, {measure, static_cast<double>(i), first.blocks,
+                     static_cast<double>(values.size()) - first.blocks, rank.value, rank.low,
+                     rank.high, first.value, first.error, first.interval.low, first.interval.high,
+                     total.value, total.interval.low, total.interval.high, left.value,
+                     left.interval.low, left.interval.high});
       for (std::size_t j = i + 1; blocks.second_order() && j < groups.size(); ++j) {
         const Index second = second_order_index(blocks, values, i, j, plan.confidence);
-        put(pairs, {measure, static_cast<double>(i), static_cast<double>(j), second.blocks,
-                    second.value, second.interval.low, second.interval.high});
+        put_row(pairs, {measure, static_cast<double>(i), static_cast<double>(j), second.blocks,
+                        second.value, second.interval.low, second.interval.high});
       }
     }
     measure += 1.0;
