@@ -24,8 +24,9 @@ namespace {
 void check_join(const StudyOptions& options) {
   if (options.silence && !options.join)
     throw InputError({.where = "--silence", .got = "no --join", .expected = "both or none"});
-  if (options.join && (options.until || options.fresh || options.assemble || options.retry ||
-                       options.compare || !options.range.empty() || !options.shard.empty()))
+  if (options.join &&
+      (!options.until.empty() || options.fresh || options.assemble || options.retry ||
+       options.compare || !options.range.empty() || !options.shard.empty()))
     throw InputError({.where = "--join",
                       .got = "--until, --fresh, --retry, --assemble, --compare, --realisations or "
                              "--shard beside it",
@@ -56,6 +57,8 @@ int study_run(const StudyOptions& options) {
     return std::move(*made);
   }();
   if (!options.quiet) warn(work.fingerprint.warnings);
+  if (const std::string design = study::design_text(order.study); !options.quiet && !design.empty())
+    print(design + '\n');
   order.run.progress = [&](const study::Progress& p) { progress->update(p); };
   const study::StudyOutcome outcome =
       options.join ? study::run_crew(work, order.run) : study::run_study(work, order.run);

@@ -104,7 +104,8 @@ int compare_studies(const StudyOptions& options, const RunStudy& run) {
     throw InputError({.where = "--compare",
                       .got = "one study",
                       .expected = "two or more: asdic study --compare A.toml B.toml"});
-  if (options.until || options.assemble || !options.range.empty() || !options.shard.empty())
+  if (!options.until.empty() || options.assemble || !options.range.empty() ||
+      !options.shard.empty())
     throw InputError({.where = "--compare",
                       .got = "--until, --assemble, --realisations or --shard",
                       .expected = "whole studies: make parts and merge them, then compare"});

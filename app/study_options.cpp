@@ -4,6 +4,7 @@
 #include <tbb/info.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 
@@ -38,7 +39,7 @@ std::filesystem::path default_output(const std::string& study, study::IndexRange
 }
 
 void check_until(const StudyOptions& options, const StudyOrder& order) {
-  if (!options.until) return;
+  if (options.until.empty()) return;
   study::check_until(order.study);
   if (order.run.range != study::IndexRange{0, order.study.realisations})
     throw InputError({.where = "--until",
@@ -59,11 +60,14 @@ void add_study_options(const Command& command, StudyOptions& options) {
       .type_name("KEY.PATH=VALUE")
       .one_at_a_time();
   command
-      .add_option("--until", options.until,
-                  "stop once the confidence interval of the running estimate is at most twice this "
-                  "wide; looked at after 100, 200, ... 1000, 2000, ... realisations")
-      .type_name("HALF_WIDTH")
-      .check(above_zero());
+      .add_option(
+          "--until", options.until,
+          "stop once the confidence interval is at most twice this wide: of the study's first "
+          "question, or of NAME, a measure (pd), the worst bin of a table (pd_by_range) or an "
+          "index (total_order); repeated, all of them; looked at after 100, 200, ... 1000, "
+          "2000, ... realisations or blocks")
+      .type_name("[NAME=]HALF_WIDTH")
+      .one_at_a_time();
   command.add_flag("--fresh", options.fresh, "begin anew: what is there is written over");
   command.add_flag("--retry", options.retry,
                    "make rows again that were skipped, or passed over because processes died with "
@@ -87,7 +91,7 @@ StudyOrder order_of(const StudyOptions& options) {
                                             : std::filesystem::path(options.output);
   check_output(order.run.output, rules_for(order.run.output, options.force, path));
   check_until(options, order);
-  order.run.until = options.until;
+  order.run.until = study::Until(order.study, options.until);
   order.run.fresh = options.fresh;
   order.run.force = options.force;
   order.run.retry = options.retry;
@@ -116,14 +120,21 @@ std::string workers(const StudyOrder& order) {
   return order.ranks == 1 ? threads : fmt::format("{} ranks of {}", order.ranks, threads);
 }
 
-/// Whether the interval became as narrow as --until asks for.
-std::string until_text(const study::StudyOutcome& outcome, double half_width) {
+/// What became of --until: whether all is known as well as it asks for, and how well.
+std::string until_text(const study::StudyOutcome& outcome) {
   const std::string all = count_of(outcome.range.size(), "realisation");
-  if (outcome.stopped_early) return "enough after " + all;
-  const auto& last = outcome.estimate;
-  if (last && 0.5 * (last->high - last->low) <= half_width)
-    return "as narrow as --until asks for, after all " + all;
-  return "not as narrow as --until asks for";
+  const bool enough = std::all_of(outcome.known.begin(), outcome.known.end(),
+                                  [](const study::Known& known) { return known.enough(); });
+  std::string text = outcome.stopped_early ? "enough after " + all
+                     : enough              ? "as narrow as --until asks for, after all " + all
+                                           : "not as narrow as --until asks for";
+  for (const study::Known& known : outcome.known)
+    if (outcome.known.size() > 1 || !known.where.empty() || !known.enough())
+      text += fmt::format(
+          "\n  {}: {}{}, asked for ± {:g}", known.name,
+          std::isfinite(known.half_width) ? fmt::format("± {:.3g}", known.half_width) : "not known",
+          known.where.empty() ? "" : " at the worst (" + known.where + ')', known.asked);
+  return text;
 }
 
 }  // namespace
@@ -165,7 +176,8 @@ int report(const StudyOrder& order, const study::StudyOutcome& outcome, bool qui
   if (outcome.left_out > 0)
     print(fmt::format("{} left out of {}: it is not known there (NaN or infinite)\n",
                       count_of(outcome.left_out, "realisation"), outcome.question));
-  if (order.run.until) print(until_text(outcome, *order.run.until) + '\n');
+  for (const std::string& note : outcome.notes) print("note: " + note + '\n');
+  if (order.run.until) print(until_text(outcome) + '\n');
   print(fmt::format("{}: {}{}\n", file,
                     byte_count(static_cast<double>(std::filesystem::file_size(file))),
                     outcome.complete ? ""

@@ -16,7 +16,7 @@ struct StudyOptions {
   std::string output, range, shard;
   std::vector<std::string> overrides;
   std::optional<int> threads;
-  std::optional<double> until;
+  std::vector<std::string> until;
   bool fresh = false, force = false, assemble = false, retry = false, quiet = false,
        compare = false, join = false, report = false;
   std::optional<double> silence;  ///< of workers and ranks [s]

@@ -83,6 +83,9 @@ int study_run(const StudyOptions& options, double silence, const study::mpi::Ses
   order->run.silence = std::chrono::duration<double>(silence);
   const StopTeller teller(session, order->run);
   if (!options.quiet && session.rank() == 0) warn(work.fingerprint.warnings);
+  if (const std::string design = study::design_text(order->study);
+      !options.quiet && session.rank() == 0 && !design.empty())
+    print(design + '\n');
   study::StudyOutcome outcome;
   std::string said;
   {

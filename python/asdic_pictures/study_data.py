@@ -75,6 +75,7 @@ class SummaryTable:
     name: str
     title: str
     columns: list
+    method: str = ""       # of its intervals
 
     def __contains__(self, name) -> bool:
         return any(c.name == name for c in self.columns)
@@ -161,7 +162,8 @@ def _column(name, dataset, rows=slice(None)) -> Column:
 def _summary(name, group) -> SummaryTable:
     order = [_text(n) for n in np.ravel(group.attrs.get("columns", sorted(group)))]
     return SummaryTable(name, _text(group.attrs.get("title", name)),
-                        [_column(n, group[n]) for n in order])
+                        [_column(n, group[n]) for n in order],
+                        _text(group.attrs.get("intervals", "")))
 
 
 def _laws(f) -> dict:

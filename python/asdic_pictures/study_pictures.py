@@ -15,9 +15,14 @@ TAIL = 0.1  # share of the values without an echo that the tail of an ROC is dra
 DETAILS = ("path", "echo_time", "noise_level", "series_")  # measures that are left out first
 
 
+def columns_of(count: int) -> int:
+    """Of a grid of small pictures."""
+    return 2 if count == 4 else min(3, count)
+
+
 def panels(study: Study, what: str, count: int, height: float = 2.6):
     """A grid of axes for `count` small pictures. → figure, axes [count]"""
-    columns = 2 if count == 4 else min(3, count)
+    columns = columns_of(count)
     rows = -(-count // columns)
     fig, axes = style.figure(what, max(4.2, 0.9 + height * rows), nrows=rows, ncols=columns,
                              squeeze=False)
@@ -331,11 +336,102 @@ def draw_histograms(study: Study) -> dict:
     return {"histograms": fig}
 
 
+def bars(axes, table: SummaryTable, rows, name: str, at, colour: str, height: float, label=None):
+    """Shares of the variance as bars with their intervals; what falls below 0 by chance as 0."""
+    value = np.maximum(table[name].values[rows], 0.0)
+    low, high = table[f"{name}_low"].values[rows], table[f"{name}_high"].values[rows]
+    axes.barh(at, value, height, color=colour, label=label)
+    ends = [value - np.clip(low, 0.0, value), np.maximum(high - value, 0.0)]
+    axes.errorbar(value, at, xerr=np.nan_to_num(ends), fmt="none", ecolor=style.INK, capsize=2.0,
+                  lw=0.9)
+
+
+def bar_panels(study: Study, table: SummaryTable, title: str, column: str, most: int,
+               least: float = -np.inf):
+    """A panel for each measure that has shares which may reach `least`. → figure, and of each panel
+    axes and rows, most first
+    """
+    of, shown = table["measure"], []
+    for k in range(len(of.labels)):
+        seen = np.isfinite(table[column].values) & (table[f"{column}_high"].values >= least)
+        rows = np.flatnonzero((of.values == k) & seen)
+        if rows.size and np.any(table[column].values[rows] != 0.0):
+            shown.append((k, rows[np.argsort(-table[column].values[rows], kind="stable")][:most]))
+    every, shown = len(shown), shown[:MOST_PANELS]
+    if not shown:
+        return None, []
+    some = f", {len(shown)} of {every} measures" if len(shown) < every else ""
+    tallest = max(rows.size for _, rows in shown)
+    fig, axes = panels(study, title + some, len(shown), height=1.1 + 0.36 * tallest)
+    for a, (k, rows) in zip(axes, shown):
+        a.set_xlim(0.0, 1.05)
+        a.set_ylim(rows.size - 0.4, -0.6)
+        a.set_xlabel(f"share of the variance of\n{spoken(of.labels[k])}")
+        a.grid(True, axis="x")
+        over = np.max(table[f"{column}_high"].values[rows], initial=0.0)
+        if over > 1.05:
+            a.set_xlim(0.0, min(2.0, 1.05 * over))
+    return fig, [(a, rows) for a, (_, rows) in zip(axes, shown)]
+
+
+def draw_orders(study: Study, table: SummaryTable) -> dict:
+    """First and total order of every input beside each other, with their intervals."""
+    fig, shown = bar_panels(study, table, "Which input matters: alone, and with the others",
+                            "total_order", 12)
+    if fig is None:
+        return {}
+    inputs = table["input"]
+    for a, rows in shown:
+        at = np.arange(rows.size)
+        bars(a, table, rows, "first_order", at - 0.2, style.BLUE, 0.36, "alone (first order)")
+        bars(a, table, rows, "total_order", at + 0.2, style.ORANGE, 0.36, "in all (total order)")
+        a.set_yticks(at, [style.shorten(spoken(inputs.labels[int(k)]), 18)
+                          for k in inputs.values[rows]])
+        left = table["unexplained"].values[rows[0]]
+        if np.isfinite(left):
+            a.set_xlabel(f"{a.get_xlabel()} (of no input alone: {max(0.0, left):.2f})")
+    style.legend_below(shown[-1 - (len(shown) - 1) % columns_of(len(shown))][0], points=52.0, ncol=2)
+    heading(shown[0][0], study, f"bars: {study.interval}, "
+                                f"{int(np.max(table['count'].values))} blocks")
+    return {"sensitivity": fig}
+
+
+def draw_interactions(study: Study) -> dict:
+    """What pairs of inputs do together, the ten that do most."""
+    tables = study.tables(lambda t: t.name == "interactions" and "second_order" in t)
+    if not tables or not tables[0]["input"].labels:
+        return {}
+    table = tables[0]
+    fig, shown = bar_panels(study, table, "Which inputs act together", "second_order", 10, 0.01)
+    if fig is None:
+        return {}
+    one, other = table["input"], table["with"]
+    for a, rows in shown:
+        bars(a, table, rows, "second_order", np.arange(rows.size), style.BLUE, 0.6)
+        a.set_yticks(np.arange(rows.size),
+                     [f"{style.shorten(spoken(one.labels[int(i)]), 12)} × "
+                      f"{style.shorten(spoken(other.labels[int(j)]), 12)}"
+                      for i, j in zip(one.values[rows], other.values[rows])])
+    heading(shown[0][0], study, f"bars: {study.interval}, second order")
+    return {"interactions": fig}
+
+
+def unexplained(table: SummaryTable, measure: int) -> str:
+    """Beside a measure's name, where first orders leave much of its variance out."""
+    if "unexplained" not in table:
+        return ""
+    left = table["unexplained"].values[table["measure"].values == measure]
+    much = left.size and np.isfinite(left[0]) and left[0] > 0.3
+    return f"\n({left[0]:.2f} of no input alone)" if much else ""
+
+
 def draw_sensitivity(study: Study) -> dict:
     tables = study.tables(lambda t: t.name == "sensitivity" and "first_order" in t)
     if not tables:
         return {}
     table = tables[0]
+    if "total_order" in table and table["measure"].labels and table["input"].labels:
+        return draw_orders(study, table)
     measures, inputs = table["measure"], table["input"]
     if not measures.labels or not inputs.labels:
         return {}
@@ -367,7 +463,8 @@ def draw_sensitivity(study: Study) -> dict:
                        color=style.readable_on(image.to_rgba(value)))
         a.set_xticks(np.arange(len(inputs.labels)), [spoken(n) for n in inputs.labels],
                      rotation=25, ha="right")
-        a.set_yticks(np.arange(len(shown)), [spoken(measures.labels[k]) for k in shown])
+        a.set_yticks(np.arange(len(shown)), [spoken(measures.labels[k]) + unexplained(table, k)
+                                             for k in shown])
         a.set_xlabel(title)
         fig.colorbar(image, ax=a, pad=0.02, aspect=30)
     told = [spoken(measures.labels[k]) for k in constant]
@@ -387,11 +484,13 @@ def draw_convergence(study: Study) -> dict:
     axes.set_xscale("log")
     axes.set_xlabel("realisations")
     axes.set_ylabel(table[name].label())
-    style.subtitle(axes, f"{study.heading()} · band: {study.interval}")
+    how = f", {table.method}" if table.method else ""
+    style.subtitle(axes, f"{study.heading()} · band: {study.interval}{how}")
     return {"convergence": fig}
 
 
-ALL = (draw_by, draw_map, draw_roc, draw_histograms, draw_sensitivity, draw_convergence)
+ALL = (draw_by, draw_map, draw_roc, draw_histograms, draw_sensitivity, draw_interactions,
+       draw_convergence)
 
 
 def draw(study: Study, only=None):
@@ -411,7 +510,7 @@ def names_of(study: Study, one) -> list:
     if one in (draw_by, draw_map):
         return [t.name for t in study.summary if "_by_" in t.name]
     return [{draw_roc: "roc", draw_histograms: "histograms", draw_sensitivity: "sensitivity",
-             draw_convergence: "convergence"}[one]]
+             draw_interactions: "interactions", draw_convergence: "convergence"}[one]]
 
 
 def left_out(study: Study) -> dict:

@@ -273,6 +273,18 @@ std::vector<std::string> names_of(const std::vector<std::string>& paths) {
 
 Comparison compare(const std::vector<Compared>& studies) {
   const Study& first = *studies.front().study;
+  if (first.design == Design::saltelli)
+    throw InputError({.where = first.path.string() + ": study.design",
+                      .got = in_quotes(name(first.design)),
+                      .expected = "another design to compare by: pairs are taken for independent, "
+                                  "and rows of a block are not"});
+  for (const Compared& other : studies)
+    if (other.study->design_options.replicates != first.design_options.replicates)
+      throw InputError({.where = other.study->path.string() + ": study.replicates",
+                        .got = std::to_string(other.study->design_options.replicates),
+                        .expected = "that of " + first.path.string() + ", " +
+                                    std::to_string(first.design_options.replicates) +
+                                    ": studies are compared realisation by realisation"});
   for (const Compared& other : studies)
     if (other.study->seed != first.seed || other.study->design != first.design)
       throw InputError({.where = other.study->path.string() + ": study",

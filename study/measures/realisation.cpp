@@ -18,8 +18,9 @@ namespace asdic::detail::study {
 namespace {
 
 /// The seed of a realisation's own streams: noise, weights, fluctuations.
-std::uint64_t seed_of(const Study& study, std::uint64_t index) {
-  const auto words = RandomStream(study.seed, Draw::study_noise, 0, index).block(0);
+/// \param chance  Sampler::chance_of its index
+std::uint64_t seed_of(const Study& study, std::uint64_t chance) {
+  const auto words = RandomStream(study.seed, Draw::study_noise, 0, chance).block(0);
   return (static_cast<std::uint64_t>(words[0]) << 32) | words[1];
 }
 
@@ -135,7 +136,7 @@ Row Realiser::Impl::make(std::uint64_t index, double bytes) {
     TomlValue tree = study.scenario;
     sampler.apply(draw, tree);
     Scenario scenario = scenario_of(tree, study.scenario_path);
-    scenario.seed = seed_of(study, index);
+    scenario.seed = seed_of(study, sampler.chance_of(index));
     PingSimulator simulator(std::move(scenario), shared, budget.share(bytes, "a row's share"));
     simulator.receives_one_ping();
     Measured measured = measure(study, simulator);

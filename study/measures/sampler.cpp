@@ -16,6 +16,18 @@ std::size_t dimensions_of(const Study& study) {
   return sum;
 }
 
+/// [dimensions] to which group of Saltelli's design each coordinate belongs.
+std::vector<std::size_t> groups_of(const Study& study) {
+  std::vector<std::size_t> of_variable(study.variables.size(), 0);
+  const std::vector<SaltelliGroup> all = saltelli_groups(study);
+  for (std::size_t g = 0; g < all.size(); ++g)
+    for (const std::size_t v : all[g].variables) of_variable[v] = g;
+  std::vector<std::size_t> groups;
+  for (std::size_t v = 0; v < study.variables.size(); ++v)
+    groups.resize(groups.size() + dimensions_of(study.variables[v], false), of_variable[v]);
+  return groups;
+}
+
 }  // namespace
 
 std::uint64_t grid_points(const std::vector<Variable>& variables) {
@@ -29,7 +41,9 @@ Sampler::Sampler(const Study& study)
     : on_grid_(study.design == Design::grid),
       variables_(study.variables),
       correlation_(study.correlation),
-      design_(study.design, study.seed, study.realisations, dimensions_of(study)) {
+      design_(study.design, study.seed, study.realisations, dimensions_of(study),
+              study.design_options,
+              study.design == Design::saltelli ? groups_of(study) : std::vector<std::size_t>()) {
   for (const Variable& variable : variables_) {
     first_column_.push_back(columns_.size());
     for (InputColumn& column : input_columns(variable))
@@ -89,7 +103,7 @@ Sampler::Drawn Sampler::draw(std::uint64_t index, std::span<const double> u) con
     for (const std::size_t column : given_[v]) given.push_back(drawn.values[column]);
     const auto* choice = std::get_if<ChoiceLaw>(&variable.law);
     if (choice != nullptr && choice->kind == ChoiceLaw::Kind::in_turn && !on_grid_)
-      drawn.choices[v] = index % choice->values.size();
+      drawn.choices[v] = design_.turn_of(index) % choice->values.size();
     else if (choice == nullptr || !on_grid_)
       drawn.choices[v] = chosen(variable, mine, given);
     values.clear();

@@ -30,6 +30,10 @@ class Sampler {
   /// the correlation of inputs
   [[nodiscard]] Drawn draw(std::uint64_t index, std::span<const double> u) const;
   [[nodiscard]] std::size_t dimensions() const noexcept { return design_.dimensions(); }
+  /// What tells the realisation's own draws (noise, scatterers) from those of others.
+  [[nodiscard]] std::uint64_t chance_of(std::uint64_t index) const noexcept {
+    return design_.chance_of(index);
+  }
 
   /// Puts the drawn values where their keys lead. \throws InputError if a path leads nowhere
   void apply(const Drawn& drawn, TomlValue& scenario) const;

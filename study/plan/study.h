@@ -8,6 +8,7 @@
 
 #include "study/plan/measure_plan.h"
 #include "study/plan/summary_plan.h"
+#include "study/sampling/clusters.h"
 #include "study/sampling/correlation.h"
 #include "study/sampling/design.h"
 #include "study/sampling/variable.h"
@@ -31,6 +32,7 @@ struct Study {
   std::uint64_t seed = 1;          ///< of designs and of every realisation's own streams
   std::uint64_t realisations = 0;  ///< indices 0 … realisations − 1
   Design design = Design::random;
+  DesignOptions design_options{};
   OnError on_error = OnError::stop;
   std::vector<Variable> variables;  ///< [vary]
   Correlation correlation;          ///< [correlation]
@@ -48,6 +50,23 @@ struct Study {
   std::vector<std::string> overrides;  ///< "key.path=value"
   std::vector<std::string> warnings;   ///< what the reader met that the user should know
 };
+
+/// Inputs that have one index together.
+struct SaltelliGroup {
+  std::string name;                    ///< "range", "wind_speed + depth"; "chance"
+  std::vector<std::size_t> variables;  ///< none: what realisations draw beside their inputs
+};
+/// The groups of Saltelli's design: those of DesignOptions, every other entry of [vary] by itself,
+/// and chance, if it is one. An entry that draws nothing is in none.
+[[nodiscard]] std::vector<SaltelliGroup> saltelli_groups(const Study& study);
+[[nodiscard]] SaltelliBlocks saltelli_blocks(const Study& study);
+
+/// Which rows are not independent of one another.
+[[nodiscard]] Clusters clusters_of(const Study& study);
+
+/// "500 blocks of 8 realisations, …": what a design makes of its blocks or replicates and what that
+/// costs; "" of designs without them.
+[[nodiscard]] std::string design_text(const Study& study);
 
 /// SHA-256 of all that decides the rows (seed, design, scenario with what it includes, variables,
 /// measures, overrides), as hexadecimal text: parts with the same one belong together. How many

@@ -4,6 +4,7 @@
 #include <array>
 #include <string_view>
 
+#include "core/text.h"
 #include "io/scenario/document.h"
 #include "io/scenario/scenario_reader.h"
 #include "io/text/csv_table.h"
@@ -43,13 +44,32 @@ void read_head(TomlTable table, Study& study) {
   study.title = table.text("title", "");
   study.seed = static_cast<std::uint64_t>(table.integer("seed", 0, most, 1));
   const std::string design =
-      table.choice("design", {"random", "latin_hypercube", "sobol", "grid"}, "random");
-  for (const Design d : {Design::latin_hypercube, Design::sobol, Design::grid})
+      table.choice("design", {"random", "latin_hypercube", "sobol", "grid", "saltelli"}, "random");
+  for (const Design d : {Design::latin_hypercube, Design::sobol, Design::grid, Design::saltelli})
     if (design == name(d)) study.design = d;
+  const auto of = [&](const char* key, Design owner) {
+    const bool there = table.has(key);
+    if (there && study.design != owner)
+      throw table.fault(key, "no \"" + std::string(key) + "\" but beside design = \"" +
+                                 std::string(name(owner)) + "\"");
+    return there;
+  };
+  DesignOptions& options = study.design_options;
+  if (of("replicates", Design::sobol))
+    options.replicates = static_cast<std::uint64_t>(table.integer("replicates", 1, 1024));
+  if (of("second_order", Design::saltelli))
+    options.second_order = table.flag("second_order", false);
+  if (of("chance", Design::saltelli)) options.chance = table.flag("chance", false);
   constexpr std::int64_t plenty = 1'000'000'000'000'000;
   const std::int64_t last = study.design == Design::sobol ? std::int64_t{1} << 32 : plenty;
-  if (study.design != Design::grid || table.has("realisations"))  // else: of the grid once
+  static_cast<void>(of("groups", Design::saltelli));  // once [vary] is known
+  if (of("blocks", Design::saltelli)) {               // times their rows, once [vary] is known
+    if (table.has("realisations"))
+      throw table.fault("realisations", "no \"realisations\" beside blocks");
+    study.realisations = static_cast<std::uint64_t>(table.integer("blocks", 2, plenty / 1000));
+  } else if (study.design != Design::grid || table.has("realisations")) {  // else: of the grid once
     study.realisations = static_cast<std::uint64_t>(table.integer("realisations", 1, last));
+  }
   if (table.choice("on_error", {"stop", "skip"}, "stop") == "skip") study.on_error = OnError::skip;
   static_cast<void>(table.has("scenario"));
   table.finish();
@@ -95,6 +115,85 @@ void read_scenario_tree(TomlTable head, const TomlValue& document, Study& study)
   for (const std::string& assignment : overrides) apply_override(study.scenario, assignment);
 }
 
+/// groups = [["wind_speed", "depth"], …]: names of entries of [vary].
+void read_groups(TomlTable& head, Study& study) {
+  if (!head.has("groups")) return;
+  std::vector<std::string> names, taken;
+  std::string list;
+  for (const Variable& variable : study.variables) {
+    names.push_back(variable.name);
+    list += (list.empty() ? "" : ", ") + in_quotes(variable.name);
+  }
+  const TomlValue& value = *study.document.find("study")->find("groups");
+  const auto* groups = std::get_if<TomlValue::Array>(&value.data);
+  if (groups == nullptr) throw head.fault("groups", "an array of arrays of inputs, " + list);
+  for (std::size_t g = 0; g < groups->size(); ++g) {
+    const std::string key = "groups[" + std::to_string(g) + "]";
+    const auto* group = std::get_if<TomlValue::Array>(&(*groups)[g].data);
+    if (group == nullptr || group->empty()) throw head.fault(key, "an array of inputs, " + list);
+    study.design_options.groups.emplace_back();
+    for (std::size_t i = 0; i < group->size(); ++i) {
+      const std::string at = key + "[" + std::to_string(i) + "]";
+      const auto* name = std::get_if<std::string>(&(*group)[i].data);
+      if (name == nullptr || std::find(names.begin(), names.end(), *name) == names.end())
+        throw head.fault(at, "an input, one of " + list, (*group)[i].describe());
+      if (std::find(taken.begin(), taken.end(), *name) != taken.end())
+        throw head.fault(at, "every input once", in_quotes(*name) + " twice");
+      taken.push_back(*name);
+      study.design_options.groups.back().push_back(*name);
+    }
+  }
+}
+
+/// Rows of designs that are made of blocks or replicates: whole ones. \param head  [study]
+/// Correlated inputs are one group: which of them an index is due to nobody can tell.
+void group_correlated(const TomlTable& head, Study& study) {
+  if (study.design != Design::saltelli || study.correlation.inputs.empty()) return;
+  std::vector<std::string> names;
+  for (const std::size_t v : study.correlation.inputs) names.push_back(study.variables[v].name);
+  auto& groups = study.design_options.groups;
+  const auto in = [](const std::vector<std::string>& group) {
+    return [&group](const std::string& name) {
+      return std::find(group.begin(), group.end(), name) != group.end();
+    };
+  };
+  for (const std::vector<std::string>& group : groups) {
+    if (std::all_of(names.begin(), names.end(), in(group))) return;
+    if (std::any_of(names.begin(), names.end(), in(group)))
+      throw head.fault("groups", "the inputs of [correlation] in one group");
+  }
+  groups.push_back(std::move(names));
+}
+
+void settle_rows(TomlTable head, Study& study) {
+  if (study.design == Design::saltelli && saltelli_groups(study).empty())
+    throw head.fault("design", "inputs in [vary], whose indices it is for");
+  if (study.design_options.chance)
+    for (const Variable& variable : study.variables)
+      if (variable.name == "chance")
+        throw head.fault("chance",
+                         "no input of that name (name = \"…\" of " + variable.origin + ")");
+  read_groups(head, study);
+  group_correlated(head, study);
+  const Clusters clusters = clusters_of(study);
+  if (head.has("blocks")) study.realisations *= clusters.size;
+  const std::uint64_t over = study.realisations % clusters.size;
+  if (clusters.kind == Clusters::Kind::rows) return;
+  const std::uint64_t least =
+      clusters.kind == Clusters::Kind::blocks ? 2 * clusters.size : clusters.size;
+  if (over == 0 && study.realisations >= least) return;
+  const std::uint64_t next = std::max(least, study.realisations - over + clusters.size);
+  const std::string what =
+      clusters.kind == Clusters::Kind::blocks
+          ? "the rows of a block (A, B and " +
+                std::string(study.design_options.second_order ? "two" : "one") +
+                " for each of the " + std::to_string(saltelli_groups(study).size()) +
+                " groups), such as "
+          : "the replicates, such as ";
+  throw head.fault("realisations", "a multiple of " + std::to_string(clusters.size) + ", " + what +
+                                       std::to_string(next));
+}
+
 }  // namespace
 
 Study read_study(const std::filesystem::path& path, std::span<const std::string> overrides) {
@@ -119,6 +218,7 @@ Study read_study(const std::filesystem::path& path, std::span<const std::string>
   if (own.has("correlation"))
     study.correlation = read_correlation(own.table("correlation"),
                                          *study.document.find("correlation"), study.variables);
+  settle_rows(root.table("study"), study);
   if (study.realisations == 0) study.realisations = grid_points(study.variables);
   make_room(study.variables, study.scenario_path, study.scenario);
   study.measure = read_measure(own.table("measure"), example_of(study));

@@ -157,6 +157,10 @@ ChoiceLaw read_choice(const std::string& name, TomlTable& table, const TomlValue
     throw table.fault("law",
                       "\"categorical\" or \"grid\" for an even number of values in a Sobol' "
                       "design, whose points go to and fro with the index as a list does");
+  if (name == "list" && design == Design::saltelli)
+    throw table.fault("law",
+                      "\"categorical\" or \"grid\" in Saltelli's design, whose values are "
+                      "all drawn");
   if (name == "list") law.kind = ChoiceLaw::Kind::in_turn;
   if (name == "categorical")
     law.cumulative = read_weights(table, law.values.size());

@@ -249,12 +249,6 @@ InputError nothing_to_assemble(const std::filesystem::path& output) {
                                  ": without --assemble they are made"});
 }
 
-std::string until_text(double half_width) {
-  std::string text = std::to_string(half_width);
-  while (text.ends_with('0')) text.pop_back();
-  return "--until " + text;
-}
-
 }  // namespace
 
 std::optional<std::uint64_t> Remaining::next() {
@@ -275,14 +269,20 @@ void write_output(const Work& work, const StudyRun& run, const OrderedEstimate& 
   if (run.until && estimate.enough() && *estimate.enough() < run.range.size()) {
     outcome.range.end = run.range.first + *estimate.enough();
     fingerprint.realisations = outcome.range.end;
-    stopped_by = until_text(*run.until);
+    stopped_by = run.until.text();
     outcome.stopped_early = true;
   }
   outcome.skipped = estimate.skipped();
   outcome.left_out = estimate.left_out();
   outcome.question = estimate.name();
+  outcome.known = estimate.known();
+  const auto summarise = [&](const Table& table) {
+    Summary summary = work.summarise(table);
+    outcome.notes = summary.notes;
+    return summary;
+  };
   outcome.complete =
-      assemble(output, fingerprint, outcome.range, journals.all(), work.summarise, stopped_by);
+      assemble(output, fingerprint, outcome.range, journals.all(), summarise, stopped_by);
   outcome.written = true;
   std::vector<Session> sessions;
   for (const Journal* journal : journals.all())

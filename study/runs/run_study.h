@@ -41,11 +41,11 @@ struct Progress {
 struct StudyRun {
   std::filesystem::path output{};
   IndexRange range{};
-  std::optional<double> until{};  ///< half-width of the confidence interval to stop at
-  bool fresh = false;             ///< begins anew, whatever results are there
-  bool force = false;             ///< even over a file that asdic did not write
-  bool assemble_only = false;     ///< makes no rows: a file of those that are there
-  bool retry = false;             ///< makes rows again that were skipped, or given up
+  Until until{};               ///< what has to be known how well, to stop
+  bool fresh = false;          ///< begins anew, whatever results are there
+  bool force = false;          ///< even over a file that asdic did not write
+  bool assemble_only = false;  ///< makes no rows: a file of those that are there
+  bool retry = false;          ///< makes rows again that were skipped, or given up
   std::chrono::duration<double> silence{
       120.0};  ///< of a rank of MPI or a worker that is then taken for dead
   Session session{};
@@ -67,7 +67,9 @@ struct StudyOutcome {
   IndexRange range{};          ///< of the output; shorter than asked for after --until
   bool stopped_early = false;  ///< by --until
   std::optional<Estimate> estimate{};
-  std::string warning{};  ///< mixed builds
+  std::vector<Known> known{};        ///< how well is known what --until asks for
+  std::string warning{};             ///< mixed builds
+  std::vector<std::string> notes{};  ///< what the user should know of the summary
 };
 
 /// The output of a run: while it lives, nobody else makes this file or its journals.

@@ -54,6 +54,7 @@ void write_summary(Hdf5File& file, const Summary& summary, const Noted& noted) {
     const std::string group = "summary/" + table.name;
     file.make_group(group);
     file.set_attribute(group, "title", table.title);
+    if (!table.intervals.empty()) file.set_attribute(group, "intervals", table.intervals);
     std::vector<std::string> order;
     const std::string rows = write_rows(file, table, group);
     for (std::size_t i = 0; i < table.columns.size(); ++i) {

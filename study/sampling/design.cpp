@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 #include "core/random.h"
 #include "study/sampling/sobol.h"
@@ -18,6 +19,8 @@ std::string_view name(Design design) noexcept {
       return "sobol";
     case Design::grid:
       return "grid";
+    case Design::saltelli:
+      return "saltelli";
   }
   return "";
 }
@@ -59,26 +62,54 @@ std::uint64_t permuted(std::uint64_t index, std::uint64_t n, std::uint64_t seed,
 /// Rounding must not take a coordinate out of the open interval.
 double inside(double u) noexcept { return std::clamp(u, 0x1p-54, 1.0 - 0x1p-53); }
 
+/// Groups of coordinates, and one for chance.
+std::size_t count_of(const std::vector<std::size_t>& groups, bool chance) {
+  const std::size_t of_inputs =
+      groups.empty() ? 0 : *std::max_element(groups.begin(), groups.end()) + 1;
+  return of_inputs + (chance ? 1 : 0);
+}
+
 }  // namespace
 
 PointDesign::PointDesign(Design design, std::uint64_t seed, std::uint64_t points,
-                         std::size_t dimensions)
-    : design_(design), seed_(seed), points_(points), dimensions_(dimensions) {}
+                         std::size_t dimensions, const DesignOptions& options,
+                         std::vector<std::size_t> groups)
+    : design_(design),
+      seed_(seed),
+      points_(points),
+      dimensions_(dimensions),
+      options_(options),
+      groups_(std::move(groups)),
+      blocks_(count_of(groups_, options.chance), options.second_order) {}
 
 void PointDesign::point(std::uint64_t index, std::span<double> u) const noexcept {
   for (std::size_t i = 0; i < u.size(); ++i) {
     const auto d = static_cast<std::uint32_t>(i);
+    if (design_ == Design::saltelli) {
+      const bool of_b = blocks_.of_b(index % blocks_.rows(), groups_[i]);
+      u[i] = uniform_draw(seed_, index / blocks_.rows(),
+                          of_b ? d + static_cast<std::uint32_t>(dimensions_) : d);
+      continue;
+    }
     const double within = uniform_draw(seed_, index, d);
     u[i] = within;
     if (design_ == Design::latin_hypercube && index < points_) {
       const auto stratum = static_cast<double>(permuted(index, points_, seed_, d));
       u[i] = inside((stratum + within) / static_cast<double>(points_));
     } else if (design_ == Design::sobol && i < most_sobol_dimensions) {
+      const auto point = static_cast<std::uint32_t>(index / options_.replicates);
       const std::uint32_t digits =
-          owen_scrambled(sobol_digits(static_cast<std::uint32_t>(index), i), seed_, d);
+          owen_scrambled(sobol_digits(point, i), seed_, d, index % options_.replicates);
       u[i] = inside((static_cast<double>(digits) + within) * 0x1p-32);
     }
   }
+}
+
+std::uint64_t PointDesign::chance_of(std::uint64_t index) const noexcept {
+  if (design_ != Design::saltelli) return index;
+  // The last group, if it is one; else A's rows share A's, and B's rows B's.
+  const std::size_t chance = options_.chance ? blocks_.groups() - 1 : blocks_.rows();
+  return 2 * (index / blocks_.rows()) + (blocks_.of_b(index % blocks_.rows(), chance) ? 1 : 0);
 }
 
 }  // namespace asdic::detail::study

@@ -114,13 +114,13 @@ std::uint32_t sobol_digits(std::uint32_t index, std::size_t dimension) noexcept 
   return digits;
 }
 
-std::uint32_t owen_scrambled(std::uint32_t digits, std::uint64_t seed,
-                             std::uint32_t dimension) noexcept {
+std::uint32_t owen_scrambled(std::uint32_t digits, std::uint64_t seed, std::uint32_t dimension,
+                             std::uint64_t replicate) noexcept {
   std::uint32_t result = digits;
   for (unsigned k = 0; k < 32; ++k) {
-    // The node of the binary tree: a one, and the k digits before this one below it.
-    const std::uint64_t node =
-        (std::uint64_t{1} << k) | (k == 0 ? 0 : std::uint64_t{digits} >> (32U - k));
+    // The node of the replicate's binary tree: a one, and the k digits before this one below it.
+    const std::uint64_t node = (replicate << 32U) | (std::uint64_t{1} << k) |
+                               (k == 0 ? 0 : std::uint64_t{digits} >> (32U - k));
     const auto words = RandomStream(seed, Draw::study_scramble, dimension, node).block(0);
     result ^= (words[0] & 1U) << (31U - k);
   }

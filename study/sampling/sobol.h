@@ -13,7 +13,9 @@ inline constexpr std::size_t most_sobol_dimensions = 64;
 
 /// Nested uniform scrambling (Owen, 1995): digit k is turned over or not by a bit drawn for the
 /// k − 1 digits before it. A bijection that keeps every elementary interval whole.
+/// \param replicate  below 2³²: of one seed they are independent
 [[nodiscard]] std::uint32_t owen_scrambled(std::uint32_t digits, std::uint64_t seed,
-                                           std::uint32_t dimension) noexcept;
+                                           std::uint32_t dimension,
+                                           std::uint64_t replicate = 0) noexcept;
 
 }  // namespace asdic::detail::study

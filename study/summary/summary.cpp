@@ -118,7 +118,9 @@ bool counts(const Table& table, std::size_t row, std::size_t column) noexcept {
   return table.valid[row] != 0 && std::isfinite(table.values[column][row]);
 }
 
-SummaryTable statistics_table(const SummaryPlan& plan, const Table& table) {
+SummaryTable statistics_table(const Study& study, const Table& table) {
+  const SummaryPlan& plan = study.summary;
+  const Clusters clusters = clusters_of(study);
   SummaryTable made{.name = "statistics",
                     .title = "Every column over all valid realisations, in its own unit",
                     .axes = {"quantity"}};
@@ -140,19 +142,18 @@ SummaryTable statistics_table(const SummaryPlan& plan, const Table& table) {
     column(quantile_name(p), of, "quantile at " + to_text(p));
   }
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    Moments moments;
+    ClusteredMean moments(clusters);
     std::vector<double> sorted;
     for (std::size_t row = 0; row < table.index.size(); ++row)
       if (counts(table, row, c)) {
-        moments.add(table.values[c][row]);
+        moments.add(table.index[row], table.values[c][row]);
         sorted.push_back(table.values[c][row]);
       }
     std::sort(sorted.begin(), sorted.end());
     const double none = std::nan("");
-    Interval interval = moments.mean_interval(plan.confidence);
-    if (is_proportion(table.columns[c]))
-      interval = proportion_interval(plan.interval, std::round(moments.mean() * moments.count()),
-                                     moments.count(), plan.confidence);
+    const Interval interval = is_proportion(table.columns[c])
+                                  ? moments.proportion(plan.interval, plan.confidence)
+                                  : moments.mean_interval(plan.confidence);
     made.columns[0].labels.push_back(table.columns[c].name);
     std::vector<double> row{static_cast<double>(c),
                             moments.count(),
@@ -170,33 +171,100 @@ SummaryTable statistics_table(const SummaryPlan& plan, const Table& table) {
 }
 
 std::vector<SummaryTable> summarise(const Study& study, const Table& table) {
-  const SummaryPlan& plan = study.summary;
-  std::vector<SummaryTable> all{statistics_table(plan, table)};
-  const auto add = [&](std::vector<SummaryTable> more) {
-    std::move(more.begin(), more.end(), std::back_inserter(all));
-  };
-  for (const std::vector<SummaryAxis>& axes : plan.by) add(tables_by(study, axes, table));
-  if (plan.roc) add(roc_tables(plan, table));
-  if (plan.convergence) add(convergence_table(plan, table));
-  if (plan.sensitivity) add(sensitivity_table(plan, table));
-  return all;
+  return summary_of(study, table).tables;
 }
+
+namespace {
+
+std::string_view name_of(ProportionInterval interval) {
+  return interval == ProportionInterval::wilson ? "Wilson" : "Clopper and Pearson";
+}
+
+/// How intervals of means and proportions are had: of `what`, in words.
+std::string method_of(const Study& study) {
+  const Clusters clusters = clusters_of(study);
+  const std::string proportions(name_of(study.summary.interval));
+  if (clusters.kind == Clusters::Kind::rows)
+    return "proportions by " + proportions + ", means by the normal distribution, of " +
+           (study.design == Design::random ? "independent rows"
+                                           : "rows taken for independent (rather too wide)");
+  const std::string size = std::to_string(clusters.size);
+  return (clusters.kind == Clusters::Kind::replicates
+              ? "from the scatter between " + size + " independent scrambles"
+              : "from the scatter between independent blocks of " + size + " rows") +
+         ", Student's t; proportions by " + proportions +
+         " of as many independent rows as scatter alike";
+}
+
+/// What first-order indices leave out, where it is much: of the measure that the study is about.
+std::string unexplained_note(const Study& study, const Table& table,
+                             const std::vector<SummaryTable>& sensitivity) {
+  constexpr double much = 0.3;  // of the variance
+  const std::optional<std::size_t> question = first_question(table.columns);
+  if (study.design == Design::saltelli || sensitivity.empty() || !question) return "";
+  const SummaryTable& made = sensitivity.front();
+  const auto column = [&](const std::string& name) -> const std::vector<double>& {
+    for (std::size_t c = 0; c < made.columns.size(); ++c)
+      if (made.columns[c].name == name) return made.values[c];
+    return made.values.front();
+  };
+  const std::string& name = table.columns[*question].name;
+  for (std::size_t row = 0; row < made.values[0].size(); ++row) {
+    if (made.columns[0].labels[static_cast<std::size_t>(made.values[0][row])] != name) continue;
+    const double left = column("unexplained")[row];
+    if (column("count")[row] < 100.0 || !(left > much)) return "";
+    return std::to_string(static_cast<int>(std::lround(100.0 * std::min(1.0, left)))) +
+           " % of the variance of " + name +
+           " is of no input by itself: it is interaction of inputs, or chance; design = "
+           "\"saltelli\" tells which";
+  }
+  return "";
+}
+
+}  // namespace
 
 Summary summary_of(const Study& study, const Table& table) {
   const SummaryPlan& plan = study.summary;
   std::string intervals = "as of independent draws";
-  if (study.design != Design::random)
+  if (clusters_of(study).kind != Clusters::Kind::rows)
+    intervals = method_of(study);
+  else if (study.design != Design::random)
     intervals += ": of this design, " + std::string(name(study.design)) +
                  ", rather too wide than too narrow (docs/theory/studies.md)";
-  return {.tables = summarise(study, table),
-          .confidence = plan.confidence,
-          .proportion_interval =
-              plan.interval == ProportionInterval::wilson ? "wilson" : "clopper_pearson",
-          .intervals = std::move(intervals),
-          .laws = law_tables(study)};
+  Summary made{.confidence = plan.confidence,
+               .proportion_interval =
+                   plan.interval == ProportionInterval::wilson ? "wilson" : "clopper_pearson",
+               .intervals = std::move(intervals)};
+  const auto add = [&](std::vector<SummaryTable> more, const std::string& method) {
+    for (SummaryTable& one : more) {
+      if (one.intervals.empty()) one.intervals = method;
+      made.tables.push_back(std::move(one));
+    }
+  };
+  const std::string method = method_of(study);
+  add({statistics_table(study, table)}, method);
+  for (const std::vector<SummaryAxis>& axes : plan.by) add(tables_by(study, axes, table), method);
+  const bool blocks = study.design == Design::saltelli;
+  if (plan.roc)
+    add(roc_tables(plan, blocks ? independent_rows(study, table) : table),
+        "proportions by " + std::string(name_of(plan.interval)) +
+            ", areas by Hanley and McNeil, of " +
+            (blocks                           ? "the rows A and B of every block alone"
+             : study.design == Design::random ? "independent rows"
+                                              : "rows taken for independent (rather too wide)"));
+  if (plan.convergence) add(convergence_table(study, table), method);
+  made.laws = law_tables(study);
+  if (!plan.sensitivity) return made;
+  std::vector<SummaryTable> sensitivity =
+      blocks ? saltelli_tables(study, table) : sensitivity_table(study, table);
+  if (std::string note = unexplained_note(study, table, sensitivity); !note.empty())
+    made.notes.push_back(std::move(note));
+  add(std::move(sensitivity), method);
+  return made;
 }
 
-RunningEstimate::RunningEstimate(const Study& study) : level_(study.summary.confidence) {
+RunningEstimate::RunningEstimate(const Study& study)
+    : level_(study.summary.confidence), mean_(clusters_of(study)) {
   const std::vector<Column> all = columns(study);
   const std::optional<std::size_t> question = first_question(all);
   column_ = question.value_or(all.size());
@@ -213,29 +281,20 @@ void RunningEstimate::add(const Row& row) {
     ++left_out_;
     return;
   }
-  ++count_;
-  const double step = row.values[column_] - mean_;
-  mean_ += step / static_cast<double>(count_);
-  squares_ += step * (row.values[column_] - mean_);
+  mean_.add(row.index, row.values[column_]);
 }
 
 std::optional<Estimate> RunningEstimate::estimate() const {
-  if (count_ < 2) return std::nullopt;
-  const auto n = static_cast<double>(count_);
-  Interval interval;
-  if (proportion_) {
-    interval = proportion_interval(interval_, std::round(mean_ * n), n, level_);
-  } else {
-    const double half = two_sided(level_) * std::sqrt(squares_ / (n - 1.0) / n);
-    interval = {mean_ - half, mean_ + half};
-  }
+  if (mean_.count() < 2.0) return std::nullopt;
+  const Interval interval =
+      proportion_ ? mean_.proportion(interval_, level_) : mean_.mean_interval(level_);
   return Estimate{.name = name_,
                   .unit = unit_,
-                  .value = mean_,
+                  .value = mean_.mean(),
                   .low = interval.low,
                   .high = interval.high,
                   .level = level_,
-                  .count = count_};
+                  .count = static_cast<std::uint64_t>(mean_.count())};
 }
 
 }  // namespace asdic::detail::study

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "study/measures/realisation.h"
+#include "study/summary/clustered_mean.h"
 #include "study/summary/law_tables.h"
 
 namespace asdic::detail::study {
@@ -23,6 +24,7 @@ struct SummaryTable {
   std::vector<std::vector<double>> values;  ///< [columns][rows]
   std::vector<std::string> axes{};   ///< columns that tell which row it is: of one, its coordinate
   std::vector<std::string> edges{};  ///< columns with the ends of the bins along them
+  std::string intervals{};           ///< by which method its intervals are had; "": it has none
 };
 
 /// All that [summary] asks for, out of the rows alone: the same bits for the same rows.
@@ -35,6 +37,7 @@ struct Summary {
   std::string proportion_interval = "wilson";  ///< or "clopper_pearson"
   std::string intervals{};                     ///< what they suppose, in a sentence
   std::vector<LawTable> laws{};                ///< of the inputs; they are not of the rows
+  std::vector<std::string> notes{};            ///< what the user should know of the answers
 };
 [[nodiscard]] Summary summary_of(const Study& study, const Table& table);
 
@@ -45,13 +48,14 @@ struct Estimate {
   double level = 0.95;
   std::uint64_t count = 0;  ///< valid rows behind it
 };
-/// Accumulates rows one by one, in order of their index. Copyable; constant memory.
+/// Accumulates rows one by one, in order of their index. Copyable; of constant memory.
 class RunningEstimate {
  public:
   explicit RunningEstimate(const Study& study);
   void add(const Row& row);
   [[nodiscard]] std::optional<Estimate> estimate() const;  ///< none before two valid rows
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
+  [[nodiscard]] const Clusters& clusters() const noexcept { return mean_.clusters(); }
   /// Valid rows in which the answer is not known or not finite: they do not count.
   [[nodiscard]] std::uint64_t left_out() const noexcept { return left_out_; }
 
@@ -61,8 +65,8 @@ class RunningEstimate {
   bool proportion_ = false;
   ProportionInterval interval_ = ProportionInterval::wilson;
   double level_ = 0.95;
-  std::uint64_t count_ = 0, left_out_ = 0;
-  double mean_ = 0.0, squares_ = 0.0;  // Welford
+  std::uint64_t left_out_ = 0;
+  ClusteredMean mean_;
 };
 
 }  // namespace asdic::detail::study

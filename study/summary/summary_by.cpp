@@ -11,6 +11,7 @@ namespace asdic::detail::study {
 std::vector<SummaryTable> tables_by(const Study& study, const std::vector<SummaryAxis>& asked,
                                     const Table& table) {
   const SummaryPlan& plan = study.summary;
+  const Clusters clusters = clusters_of(study);
   std::vector<AxisBins> axes;
   std::string suffix, along;
   for (const SummaryAxis& axis : asked) {
@@ -38,15 +39,16 @@ std::vector<SummaryTable> tables_by(const Study& study, const std::vector<Summar
     add_column(made, probability, name + "_low", "confidence interval");
     add_column(made, probability, name + "_high", "confidence interval");
     for (std::size_t cell = 0; cell < cells.size(); ++cell) {
-      double count = 0.0, hits = 0.0;
+      double hits = 0.0;
+      ClusteredMean share(clusters);
       for (const std::size_t row : cells.rows(cell))
         if (counts(table, row, c)) {
-          count += 1.0;
+          share.add(table.index[row], table.values[c][row]);
           hits += table.values[c][row];
         }
-      cells.start_row(made, cell, count);
-      const Interval interval = proportion_interval(plan.interval, hits, count, plan.confidence);
-      put(made, {hits, hits / count, interval.low, interval.high});
+      cells.start_row(made, cell, share.count());
+      const Interval interval = share.proportion(plan.interval, plan.confidence);
+      put(made, {hits, hits / share.count(), interval.low, interval.high});
     }
     all.push_back(std::move(made));
   }
@@ -63,9 +65,9 @@ std::vector<SummaryTable> tables_by(const Study& study, const std::vector<Summar
                                      [&](std::size_t row) { return table.valid[row] != 0; });
     cells.start_row(made, cell, static_cast<double>(valid));
     for (const std::size_t c : others) {
-      Moments moments;
+      ClusteredMean moments(clusters);
       for (const std::size_t row : cells.rows(cell))
-        if (counts(table, row, c)) moments.add(table.values[c][row]);
+        if (counts(table, row, c)) moments.add(table.index[row], table.values[c][row]);
       const Interval interval = moments.mean_interval(plan.confidence);
       put(made, {moments.mean(), interval.low, interval.high});
     }

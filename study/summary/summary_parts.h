@@ -30,7 +30,7 @@ void check_summary_names(const Study& study);
 [[nodiscard]] bool counts(const Table& table, std::size_t row, std::size_t column) noexcept;
 
 /// Count, mean, deviation, interval of the mean, extremes and quantiles of every column.
-[[nodiscard]] SummaryTable statistics_table(const SummaryPlan& plan, const Table& table);
+[[nodiscard]] SummaryTable statistics_table(const Study& study, const Table& table);
 /// Proportions and means of all measures along one axis or over two: "pd_by_range", …,
 /// "means_by_range".
 [[nodiscard]] std::vector<SummaryTable> tables_by(const Study& study,
@@ -39,10 +39,21 @@ void check_summary_names(const Study& study);
 /// Receiver operating characteristic of each target's matched filter, and the area under it.
 [[nodiscard]] std::vector<SummaryTable> roc_tables(const SummaryPlan& plan, const Table& table);
 /// The first question's estimate after ever more rows.
-[[nodiscard]] std::vector<SummaryTable> convergence_table(const SummaryPlan& plan,
-                                                          const Table& table);
+[[nodiscard]] std::vector<SummaryTable> convergence_table(const Study& study, const Table& table);
 /// How much every measure depends on every input.
-[[nodiscard]] std::vector<SummaryTable> sensitivity_table(const SummaryPlan& plan,
-                                                          const Table& table);
+[[nodiscard]] std::vector<SummaryTable> sensitivity_table(const Study& study, const Table& table);
+/// The same of Saltelli's design, whose blocks tell total orders and pairs: "sensitivity" and
+/// "interactions".
+[[nodiscard]] std::vector<SummaryTable> saltelli_tables(const Study& study, const Table& table);
+/// Of Saltelli's design the rows that are independent of one another, A and B of every block.
+[[nodiscard]] Table independent_rows(const Study& study, const Table& table);
+
+/// Spearman's rank correlation and its interval, by Fisher's transformation.
+struct RankCorrelation {
+  double value = 0.0, low = 0.0, high = 0.0;
+};
+/// \param x_ranks  at least four
+[[nodiscard]] RankCorrelation rank_correlation(std::span<const double> x_ranks,
+                                               std::span<const double> y, double confidence);
 
 }  // namespace asdic::detail::study

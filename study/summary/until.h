@@ -1,28 +1,74 @@
 #pragma once
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
+#include "study/sampling/clusters.h"
 #include "study/sampling/index_set.h"
 #include "study/summary/summary.h"
 
 namespace asdic::detail::study {
 
-/// When a study has seen enough: the confidence interval of its first answer is as narrow as asked
-/// for, looked at after fixed numbers of realisations only, those with one digit that is not 0,
-/// from 100 on: 100, 200, … 1000, 2000, … So the number at which it stops depends on the rows
-/// alone, not on who made them when; and there are few looks, each of which is a chance to stop by
-/// luck.
-[[nodiscard]] bool is_look(std::uint64_t count) noexcept;
+/// After how many realisations a study looks whether it has seen enough: fixed numbers, so that
+/// where it stops depends on the rows alone, not on who made them when; and few of them, for each
+/// look is a chance to stop by luck. Of rows by themselves those with one digit that is not 0, from
+/// 100 on: 100, 200, … 1000, 2000, …; of blocks as many blocks; of R replicates R·2^j and 3R·2^j,
+/// from 100 on.
+[[nodiscard]] bool is_look(std::uint64_t count, const Clusters& clusters = {}) noexcept;
+
+/// What has to be known, and how well.
+struct UntilTarget {
+  std::string name;         ///< "pd", "pd_by_range", "total_order"; "": the first question
+  double half_width = 0.0;  ///< of its widest confidence interval, at most
+  // Where it stands:
+  std::string column;             ///< of the table of rows: a measure
+  std::vector<SummaryAxis> axes;  ///< of a table along them; none: the mean of all rows
+  std::string index;  ///< "first_order", …: an index of sensitivity; "": none of these
+};
+
+/// When a study has seen enough: all of its targets are known as well as asked for.
+class Until {
+ public:
+  Until() = default;
+  /// Of the first question.
+  Until(double half_width) : targets_{{.half_width = half_width}} {}  // NOLINT: as it is written
+  /// \param texts  "0.05", "pd_by_range=0.1", as of --until
+  /// \throws InputError ("--until")
+  Until(const Study& study, const std::vector<std::string>& texts);
+
+  explicit operator bool() const noexcept { return !targets_.empty(); }
+  [[nodiscard]] bool has_value() const noexcept { return !targets_.empty(); }
+  [[nodiscard]] const std::vector<UntilTarget>& targets() const noexcept { return targets_; }
+  /// What of a study its tables take; none where they take nothing but the first question.
+  [[nodiscard]] const std::shared_ptr<const Study>& study() const noexcept { return study_; }
+  /// "--until 0.05 --until pd_by_range=0.1".
+  [[nodiscard]] std::string text() const;
+
+ private:
+  std::vector<UntilTarget> targets_;
+  std::shared_ptr<const Study> study_;
+};
+
+/// How well a target is known.
+struct Known {
+  std::string name;
+  double half_width = infinity;  ///< of its widest interval; infinite: one is not known at all
+  double asked = 0.0;
+  std::string where;  ///< the widest: "range 12500"; "": there is one alone
+  [[nodiscard]] bool enough() const noexcept { return half_width <= asked; }
+};
 
 /// Feeds an estimate with rows in the order of their indices, in whatever order they come, and says
-/// when to stop. Keeps rows only while an earlier one is missing.
+/// when to stop. Keeps rows only while an earlier one is missing; for targets along axes and of
+/// sensitivity, the columns that they take.
 class OrderedEstimate {
  public:
-  /// \param first       the first index
-  /// \param half_width  of the confidence interval to stop at, in the unit of the estimate
-  OrderedEstimate(RunningEstimate estimate, std::uint64_t first,
-                  std::optional<double> half_width = {});
+  /// \param first  the first index
+  /// \param until  what to stop at
+  OrderedEstimate(RunningEstimate estimate, std::uint64_t first, const Until& until = {});
 
   void add(Row row);
 
@@ -30,6 +76,8 @@ class OrderedEstimate {
   [[nodiscard]] std::optional<Estimate> estimate() const { return estimate_.estimate(); }
   /// How many realisations are enough, once that is known. Later rows no longer count.
   [[nodiscard]] std::optional<std::uint64_t> enough() const noexcept { return enough_; }
+  /// How well each target is known by these rows.
+  [[nodiscard]] std::vector<Known> known() const;
   /// Of these rows, those that were skipped.
   [[nodiscard]] std::uint64_t skipped() const noexcept { return skipped_; }
   [[nodiscard]] const std::string& name() const noexcept { return estimate_.name(); }
@@ -39,10 +87,19 @@ class OrderedEstimate {
 
  private:
   void take(const Row& row);
+  [[nodiscard]] Known known(const UntilTarget& target, std::size_t mean) const;
 
   RunningEstimate estimate_;
   std::uint64_t first_, next_, skipped_ = 0;
-  std::optional<double> half_width_;
+  Until until_;
+  struct Mean {
+    std::size_t column = 0;
+    bool proportion = false;
+    ClusteredMean of{};
+  };
+  std::vector<Mean> means_;         // [targets] of their columns
+  std::vector<std::size_t> taken_;  // columns that rows_ holds
+  Table rows_;
   std::optional<std::uint64_t> enough_;
   std::map<std::uint64_t, Row> waiting_;  // rows after a gap, without their time series
 };

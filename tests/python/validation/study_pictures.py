@@ -136,6 +136,41 @@ class Honest(Case):
             if name not in ("histograms", "sensitivity"):   # without intervals
                 self.assertIn("90 % confidence", words.replace("\n", " "), name)
 
+    def orders(self):
+        """Of two measures and three inputs: first orders, totals that are 0.2 more, and pairs."""
+        write(self.file)
+        with h5py.File(self.file, "r+") as f:
+            del f["summary/sensitivity"]
+            names, measures = ["season", "depth", "chance"], ["echo_level_db", "detected"]
+            first = np.array([0.3, 0.1, -0.01, 0.0, 0.05, 0.2])
+            where = dict(measure=(np.repeat([0, 1], 3), "1", measures),
+                         input=(np.tile([0, 1, 2], 2), "1", names))
+            table(f, "sensitivity", "", **where, count=np.full(6, 200.0),
+                  **estimate("first_order", first, 0.04), **estimate("total_order", first + 0.2, 0.06),
+                  unexplained=np.repeat([0.61, 0.75], 3))
+            where["with"] = ([1, 2, 2, 1, 2, 2], "1", names)
+            where["input"] = ([0, 0, 1, 0, 0, 1], "1", names)
+            table(f, "interactions", "", **where, count=np.full(6, 200.0),
+                  **estimate("second_order", np.array([0.4, 0.02, 0.0, 0.1, 0.3, 0.0]), 0.05))
+        return study_data.read(str(self.file))
+
+    def test_first_and_total_order_stand_side_by_side(self):
+        """Each input has two bars, as long as the table says, with their intervals; most first."""
+        figures = dict(study_pictures.draw(self.orders(), ["sensitivity", "interactions"]))
+        axes = figures["sensitivity"].axes
+        self.assertEqual(len(axes), 2)
+        level = axes[0]
+        self.assertEqual([t.get_text() for t in level.get_yticklabels()], ["season", "depth", "chance"])
+        np.testing.assert_allclose([b.get_width() for b in level.patches], [0.3, 0.1, 0.0, 0.5, 0.3, 0.19])
+        low, high = zip(*(segment[:, 0] for c in level.collections for segment in c.get_segments()))
+        np.testing.assert_allclose(low, [0.26, 0.06, 0.0, 0.44, 0.24, 0.13])  # none below 0
+        np.testing.assert_allclose(high, [0.34, 0.14, 0.03, 0.56, 0.36, 0.25])
+        self.assertIn("of no input alone: 0.61", level.get_xlabel())
+        words = " ".join(t.get_text() for t in figures["sensitivity"].findobj(matplotlib.text.Text))
+        self.assertIn("confidence interval, 200 blocks", words.replace("\n", " "))
+        pairs = [t.get_text() for t in figures["interactions"].axes[1].get_yticklabels()]
+        self.assertEqual(pairs[0], "season × chance")
+
     def test_depth_grows_downwards(self):
         write(self.file)
         with h5py.File(self.file, "r+") as f:

@@ -49,7 +49,47 @@ TEST(StudyFile, EveryFaultNamesLineKeyFoundAndExpected) {
        "number from 1 to 1000000000000000"},
       {study + "design = \"latin\"\n",
        "study.toml:3: study.design: found \"latin\", expected \"random\", \"latin_hypercube\", "
-       "\"sobol\" or \"grid\""},
+       "\"sobol\", \"grid\" or \"saltelli\""},
+      {study + "blocks = 5\n",
+       "study.toml:3: study.blocks: found 5, expected no \"blocks\" but beside design = "
+       "\"saltelli\""},
+      {study + "design = \"sobol\"\nchance = true\n",
+       "study.toml:4: study.chance: found true, expected no \"chance\" but beside design = "
+       "\"saltelli\""},
+      {study + "replicates = 4\n",
+       "study.toml:3: study.replicates: found 4, expected no \"replicates\" but beside design = "
+       "\"sobol\""},
+      {study + "design = \"sobol\"\nreplicates = 4\n" + measure,
+       "study.toml:2: study.realisations: found 10, expected a multiple of 4, the replicates, such "
+       "as 12"},
+      {study + "design = \"saltelli\"\nblocks = 5\n",
+       "study.toml:2: study.realisations: found 10, expected no \"realisations\" beside blocks"},
+      {study + "design = \"saltelli\"\n" + measure,
+       "study.toml:3: study.design: found \"saltelli\", expected inputs in [vary], whose indices "
+       "it is for"},
+      {study +
+           "design = \"saltelli\"\nsecond_order = true\nchance = true\n[vary]\n"
+           "\"environment.wind_speed\" = { law = \"uniform\", low = 3, high = 4 }\n" +
+           measure,
+       "study.toml:2: study.realisations: found 10, expected a multiple of 6, the rows of a block "
+       "(A, B and two for each of the 2 groups), such as 12"},
+      {"[study]\nblocks = 3\ndesign = \"saltelli\"\ngroups = [[\"wind\"]]\n[vary]\n"
+       "\"environment.wind_speed\" = { law = \"uniform\", low = 3, high = 4 }\n" +
+           measure,
+       "study.toml:4: study.groups[0][0]: found \"wind\", expected an input, one of "
+       "\"wind_speed\""},
+      {"[study]\nblocks = 3\ndesign = \"saltelli\"\ngroups = [[\"wind_speed\"], [\"wind_speed\"]]\n"
+       "[vary]\n\"environment.wind_speed\" = { law = \"uniform\", low = 3, high = 4 }\n" +
+           measure,
+       "study.toml:4: study.groups[1][0]: found \"wind_speed\" twice, expected every input once"},
+      {study + "groups = []\n",
+       "study.toml:3: study.groups: found an array of 0, expected no \"groups\" but beside design "
+       "= "
+       "\"saltelli\""},
+      {study + "design = \"saltelli\"\n[vary]\n"
+               "\"environment.wind_speed\" = { law = \"list\", values = [3, 4] }\n",
+       "study.toml:5: vary.\"environment.wind_speed\".law: found \"list\", expected "
+       "\"categorical\" or \"grid\" in Saltelli's design, whose values are all drawn"},
       {study + "sede = 1\n",
        "study.toml:3: study.sede: found an unknown key, expected a known key "
        "(did you mean \"seed\"?)"},
@@ -171,6 +211,47 @@ TEST(StudyFile, EveryFaultNamesLineKeyFoundAndExpected) {
     const std::string message = fault_of(fault.tables);
     EXPECT_EQ(message.substr(0, fault.message.size()), fault.message) << "whole: " << message;
   }
+}
+
+// The cost of a design of blocks: what it makes of them, and what it says.
+TEST(StudyFile, BlocksAreCountedInRealisations) {
+  const support::TemporaryDirectory folder;
+  const auto read = [&](const std::string& design) {
+    std::ofstream(folder.path() / "study.toml")
+        << "[study]\n"
+        << design
+        << "[vary]\n\"environment.wind_speed\" = { law = \"uniform\", low = 3, high = 4 }\n"
+           "\"target.0\" = { law = \"track\", range = [1000, 2000], depth = 80 }\n"
+           "[measure]\necho_level = true\n"
+        << plain_sea;
+    return read_study(folder.path() / "study.toml");
+  };
+  const Study first = read("design = \"saltelli\"\nblocks = 5\n");
+  EXPECT_EQ(first.realisations, 20U);  // a track's columns are one group
+  EXPECT_EQ(design_text(first),
+            "5 blocks of 4 realisations (A, B and one for each of wind_speed, target_0): 20 "
+            "realisations");
+  const Study second = read(
+      "design = \"saltelli\"\nrealisations = 40\nsecond_order = true\n"
+      "chance = true\n");
+  EXPECT_EQ(design_text(second),
+            "5 blocks of 8 realisations (A, B and two for each of wind_speed, target_0, chance): "
+            "40 realisations");
+  const Study together =
+      read("design = \"saltelli\"\nblocks = 5\ngroups = [[\"target_0\", \"wind_speed\"]]\n");
+  EXPECT_EQ(design_text(together),
+            "5 blocks of 3 realisations (A, B and one for each of wind_speed + target_0): 15 "
+            "realisations");
+  EXPECT_NE(identity(first), identity(together));
+  const Study scrambles = read("design = \"sobol\"\nrealisations = 64\nreplicates = 16\n");
+  EXPECT_EQ(design_text(scrambles), "16 independent scrambles of 4 points: 64 realisations");
+  // What decides the rows is in the identity, and one replicate is the design as it was.
+  const Study plain = read("design = \"sobol\"\nrealisations = 64\n"),
+              one = read("design = \"sobol\"\nrealisations = 64\nreplicates = 1\n");
+  EXPECT_EQ(identity(plain), identity(one));
+  EXPECT_NE(identity(plain), identity(scrambles));
+  EXPECT_NE(identity(first), identity(second));
+  EXPECT_EQ(design_text(plain), "");
 }
 
 // What would end a study when its file is written, after all realisations, is said when it is read.

@@ -120,6 +120,19 @@ TEST(Until, LooksAtFixedCountsOnly) {
             (std::vector<std::uint64_t>{100, 200, 300, 400, 500, 600, 700, 800, 900, 1000, 2000}));
 }
 
+TEST(Until, LooksAtWholeBlocksAndReplicates) {
+  const auto looks = [](const Clusters& clusters, std::uint64_t end) {
+    std::vector<std::uint64_t> all;
+    for (std::uint64_t n = 0; n <= end; ++n)
+      if (is_look(n, clusters)) all.push_back(n);
+    return all;
+  };
+  EXPECT_EQ(looks({.kind = Clusters::Kind::blocks, .size = 6}, 2000),
+            (std::vector<std::uint64_t>{600, 1200, 1800}));
+  EXPECT_EQ(looks({.kind = Clusters::Kind::replicates, .size = 16}, 1600),
+            (std::vector<std::uint64_t>{128, 192, 256, 384, 512, 768, 1024, 1536}));
+}
+
 TEST(Until, RefusesDesignsThatDependOnTheirNumber) {
   for (const Design design : {Design::latin_hypercube, Design::grid}) {
     Study study;
@@ -128,8 +141,10 @@ TEST(Until, RefusesDesignsThatDependOnTheirNumber) {
               std::string::npos);
   }
   Study study;
-  study.design = Design::sobol;
-  EXPECT_NO_THROW(check_until(study));
+  for (const Design design : {Design::sobol, Design::saltelli}) {
+    study.design = design;
+    EXPECT_NO_THROW(check_until(study));
+  }
 }
 
 }  // namespace
