@@ -65,7 +65,8 @@ struct StudyOutcome {
   IndexRange range{};          ///< of the output; shorter than asked for after --until
   bool stopped_early = false;  ///< by --until
   std::optional<Estimate> estimate{};
-  std::string warning{};  ///< mixed builds
+  std::string warning{};             ///< mixed builds
+  std::vector<std::string> found{};  ///< warnings of what came out: the summary's
 };
 
 /// The output of a run: while it lives, nobody else makes this file or its journals.

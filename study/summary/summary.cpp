@@ -118,7 +118,8 @@ bool counts(const Table& table, std::size_t row, std::size_t column) noexcept {
   return table.valid[row] != 0 && std::isfinite(table.values[column][row]);
 }
 
-SummaryTable statistics_table(const SummaryPlan& plan, const Table& table) {
+SummaryTable statistics_table(const SummaryPlan& plan, const Table& table,
+                              double false_alarm_probability) {
   SummaryTable made{.name = "statistics",
                     .title = "Every column over all valid realisations, in its own unit",
                     .axes = {"quantity"}};
@@ -138,6 +139,14 @@ SummaryTable statistics_table(const SummaryPlan& plan, const Table& table) {
   column("greatest", of, "greatest value");
   for (const double p : plan.quantiles) {
     column(quantile_name(p), of, "quantile at " + to_text(p));
+  }
+  // Of false alarms: what was found, once more by its name, beside what is set.
+  const bool set = std::isfinite(false_alarm_probability);
+  if (set) {
+    column("pfa", "1", "of false alarms: the rate that was found");
+    column("pfa_low", "1", "confidence interval (Clopper & Pearson)");
+    column("pfa_high", "1", "confidence interval (Clopper & Pearson)");
+    column("pfa_set", "1", "false-alarm probability that is set");
   }
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     Moments moments;
@@ -164,6 +173,17 @@ SummaryTable statistics_table(const SummaryPlan& plan, const Table& table) {
                             sorted.empty() ? none : sorted.back()};
     for (const double p : plan.quantiles)
       row.push_back(sorted.empty() ? none : sample_quantile(sorted, p));
+    if (set) {
+      const bool alarms =
+          is_proportion(table.columns[c]) && table.columns[c].name.starts_with("false_alarm");
+      const double n = moments.count();
+      const Interval found =
+          clopper_pearson(n > 0.0 ? std::round(moments.mean() * n) : 0.0, n, plan.confidence);
+      if (alarms)
+        row.insert(row.end(), {moments.mean(), found.low, found.high, false_alarm_probability});
+      else
+        row.insert(row.end(), 4, none);
+    }
     for (std::size_t i = 0; i < row.size(); ++i) made.values[i].push_back(row[i]);
   }
   return made;
@@ -171,12 +191,16 @@ SummaryTable statistics_table(const SummaryPlan& plan, const Table& table) {
 
 std::vector<SummaryTable> summarise(const Study& study, const Table& table) {
   const SummaryPlan& plan = study.summary;
-  std::vector<SummaryTable> all{statistics_table(plan, table)};
+  const bool by_filter =
+      study.measure.detection && study.measure.detection->by == DetectionPlan::By::matched_filter;
+  std::vector<SummaryTable> all{statistics_table(
+      plan, table, by_filter ? study.measure.false_alarm_probability() : std::nan(""))};
   const auto add = [&](std::vector<SummaryTable> more) {
     std::move(more.begin(), more.end(), std::back_inserter(all));
   };
   for (const std::vector<SummaryAxis>& axes : plan.by) add(tables_by(study, axes, table));
   if (plan.roc) add(roc_tables(plan, table));
+  add(cell_tables(study, table));
   if (plan.convergence) add(convergence_table(plan, table));
   if (plan.sensitivity) add(sensitivity_table(plan, table));
   return all;
@@ -188,11 +212,14 @@ Summary summary_of(const Study& study, const Table& table) {
   if (study.design != Design::random)
     intervals += ": of this design, " + std::string(name(study.design)) +
                  ", rather too wide than too narrow (docs/theory/studies.md)";
-  return {.tables = summarise(study, table),
+  std::vector<SummaryTable> tables = summarise(study, table);
+  std::vector<std::string> warnings = rate_warnings(study, tables);
+  return {.tables = std::move(tables),
           .confidence = plan.confidence,
           .proportion_interval =
               plan.interval == ProportionInterval::wilson ? "wilson" : "clopper_pearson",
-          .intervals = std::move(intervals)};
+          .intervals = std::move(intervals),
+          .warnings = std::move(warnings)};
 }
 
 RunningEstimate::RunningEstimate(const Study& study) : level_(study.summary.confidence) {

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "study/measures/cell_counts.h"
 #include "study/measures/realisation.h"
 
 namespace asdic::detail::study {
@@ -13,6 +14,7 @@ struct Table {
   std::vector<std::uint64_t> index;         ///< [rows]
   std::vector<std::uint8_t> valid;          ///< [rows]
   std::vector<std::vector<double>> values;  ///< [columns][rows]
+  CellSums cells{};                         ///< of all these rows, where cells are counted
 };
 
 /// A table of the summary: columns of equal length ("pd_by_range": centre, count, pd, low, high).
@@ -33,6 +35,7 @@ struct Summary {
   double confidence = 0.95;                    ///< of all intervals
   std::string proportion_interval = "wilson";  ///< or "clopper_pearson"
   std::string intervals{};                     ///< what they suppose, in a sentence
+  std::vector<std::string> warnings{};         ///< of what was found, a sentence each
 };
 [[nodiscard]] Summary summary_of(const Study& study, const Table& table);
 

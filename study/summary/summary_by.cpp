@@ -104,6 +104,15 @@ SummaryTable start(const std::string& name, const std::string& title, const std:
   return made;
 }
 
+/// The false alarms beside a target's detections, by the matched filter.
+std::optional<std::size_t> alarms_of(const Study& study, const Table& table,
+                                     const Column& detected) {
+  const std::string head = "detected";
+  if (!study.measure.detection || !detected.name.starts_with(head)) return std::nullopt;
+  const std::size_t column = column_of(table, "false_alarm" + detected.name.substr(head.size()));
+  return column < table.columns.size() ? std::optional(column) : std::nullopt;
+}
+
 }  // namespace
 
 std::vector<SummaryTable> tables_by(const Study& study, const std::vector<SummaryAxis>& asked,
@@ -164,6 +173,14 @@ std::vector<SummaryTable> tables_by(const Study& study, const std::vector<Summar
     add(made, probability, name, column.meaning + ": share of the realisations");
     add(made, probability, name + "_low", "confidence interval");
     add(made, probability, name + "_high", "confidence interval");
+    const std::optional<std::size_t> alarms = alarms_of(study, table, column);
+    if (alarms) {
+      add(made, probability, "pfa_count", "realisations whose false alarms are known");
+      add(made, probability, "pfa", "false-alarm rate that was found");
+      add(made, probability, "pfa_low", "confidence interval (Clopper & Pearson)");
+      add(made, probability, "pfa_high", "confidence interval (Clopper & Pearson)");
+      add(made, probability, "pfa_set", "false-alarm probability that is set");
+    }
     for (std::size_t cell = 0; cell < cells; ++cell) {
       double count = 0.0, hits = 0.0;
       for (const std::size_t row : rows[cell])
@@ -174,6 +191,17 @@ std::vector<SummaryTable> tables_by(const Study& study, const std::vector<Summar
       std::size_t at = put_cell(made, cell, count);
       const Interval interval = proportion_interval(plan.interval, hits, count, plan.confidence);
       put(made, {hits, hits / count, interval.low, interval.high}, at);
+      if (!alarms) continue;
+      double known = 0.0, rang = 0.0;
+      for (const std::size_t row : rows[cell])
+        if (counts(table, row, *alarms)) {
+          known += 1.0;
+          rang += table.values[*alarms][row];
+        }
+      const Interval found = clopper_pearson(rang, known, plan.confidence);
+      put(made,
+          {known, rang / known, found.low, found.high, study.measure.false_alarm_probability()},
+          at);
     }
     all.push_back(std::move(made));
   }
