@@ -39,8 +39,8 @@ struct Exponent {
 double log_integral(const Exponent& h) {
   // The top lies between slopes of different signs: doubling, then Newton's steps within.
   double low = -1.0, high = 1.0;
-  while (h(low).slope < 0.0) low *= 2.0;
-  while (h(high).slope > 0.0) high *= 2.0;
+  for (int i = 0; i < 200 && h(low).slope < 0.0; ++i) low *= 2.0;
+  for (int i = 0; i < 200 && h(high).slope > 0.0; ++i) high *= 2.0;
   double b = 0.5 * (low + high);
   Exponent::At top = h(b);
   for (int i = 0; i < 100; ++i) {

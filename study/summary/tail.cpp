@@ -206,8 +206,11 @@ Tail fit_tail(std::span<const double> levels, std::span<const double> counts,
       if (excesses.likelihood(shape, scale) < faint) break;
       const auto end = [&](double factor) {
         double inside = std::log(scale), outside = inside;
-        do outside += factor;
-        while (excesses.likelihood(shape, std::exp(outside)) >= faint);
+        // Cells all in one level are as likely of any smaller scale: 10 is far enough then.
+        for (int i = 0; i < 100; ++i) {
+          outside += factor;
+          if (excesses.likelihood(shape, std::exp(outside)) < faint) break;
+        }
         inside = outside - factor;
         for (int i = 0; i < 16; ++i) {
           const double half = 0.5 * (inside + outside);

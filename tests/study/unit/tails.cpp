@@ -183,6 +183,18 @@ TEST(Tails, GoodnessTellsAnotherLaw) {
   EXPECT_LE(fit_tail(levels, counts, one, 0.95).goodness, 0.02);
 }
 
+// All cells over the threshold in one level: any small scale is as likely, and the fit ends.
+TEST(Tails, OneLevelAloneHasAnEnd) {
+  const std::vector<double> levels = cell_levels(1e-2);
+  std::vector<double> counts(levels.size(), 0.0), one(levels.size(), 1.0);
+  counts[0] = 1e5;
+  counts[20] = 100.0;
+  const Tail tail = fit_tail(levels, counts, one, 0.95);
+  EXPECT_TRUE(tail.fitted);
+  EXPECT_EQ(tail.count, 100.0);
+  EXPECT_LE(tail.rate(levels[30]), 1e-3);
+}
+
 /// A study with the matched filter that these rows might be of.
 Study study_of() {
   Study study;
