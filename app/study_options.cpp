@@ -147,6 +147,7 @@ int report(const StudyOrder& order, const study::StudyOutcome& outcome, bool qui
     print(fmt::format("{} in the journal did not match their checksum and were made again\n",
                       count_of(outcome.damaged, "realisation")));
   if (!outcome.warning.empty()) print("warning: " + outcome.warning + '\n');
+  for (const std::string& warning : outcome.found) print("warning: " + warning + '\n');
   if (!outcome.written)
     throw RunError(
         there == 0

@@ -374,6 +374,48 @@ double MatchedFilterAt::answer(std::span<const float> pressure, std::size_t samp
   return std::norm(sum) / (energy_ * energy_);
 }
 
+std::vector<double> MatchedFilterAt::answers(std::span<const float> pressure, std::size_t samples,
+                                             std::ptrdiff_t from, std::ptrdiff_t first,
+                                             std::ptrdiff_t step, std::size_t count) const {
+  // Σ_k w_k p_(k+s) has the spectrum P·conj(W*), W* that of conj(w); each phone's own first sample
+  // is a phase.
+  const auto row = static_cast<std::ptrdiff_t>(samples);
+  const std::size_t n = fast_fft_length(samples + static_cast<std::size_t>(length_));
+  const ComplexFft<double> transform(n);
+  FftBuffer<std::complex<double>> sum(n), received(n), replica(n);
+  const std::ptrdiff_t earliest = this->first();
+  for (std::size_t phone = 0; phone < first_.size(); ++phone) {
+    received.clear();
+    replica.clear();
+    const float* p = pressure.data() + phones_[phone].channel * samples * whole_.components();
+    for (std::size_t k = 0; k < samples; ++k)
+      received[k] = whole_.is_complex()
+                        ? std::complex<double>(static_cast<double>(p[2 * k]),
+                                               static_cast<double>(p[2 * k + 1]))
+                        : std::complex<double>(2.0 * static_cast<double>(p[k]), 0.0);
+    const std::size_t at = phone * static_cast<std::size_t>(length_);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(length_); ++k)
+      replica[k] = std::conj(weights_[at + k]);
+    transform.forward(received.data());
+    transform.forward(replica.data());
+    const double turn =
+        2.0 * pi * static_cast<double>(first_[phone] - earliest) / static_cast<double>(n);
+    for (std::size_t k = 0; k < n; ++k)
+      sum[k] += finite_product(finite_product(received[k], std::conj(replica[k])),
+                               std::polar(1.0, turn * static_cast<double>(k)));
+  }
+  transform.inverse(sum.data());
+  const double scale = 1.0 / (static_cast<double>(n) * energy_);
+  std::vector<double> all(count, std::nan(""));
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::ptrdiff_t later = first + static_cast<std::ptrdiff_t>(i) * step;
+    const std::ptrdiff_t begin = earliest + later - from;
+    if (begin < 0 || end() + later - from > row) continue;
+    all[i] = std::norm(scale * sum[static_cast<std::size_t>(begin)]);
+  }
+  return all;
+}
+
 double MatchedFilterAt::noise(double density) const noexcept {
   return 2.0 * density * whole_.sample_rate / energy_;
 }

@@ -128,6 +128,11 @@ class MatchedFilterAt {
   /// sample; what first() and end() say, `later`, lies within
   [[nodiscard]] double answer(std::span<const float> pressure, std::size_t samples,
                               std::ptrdiff_t from, std::ptrdiff_t later) const;
+  /// |y|² at `first`, `first` + `step`, … samples after the delays, by a transform of the record:
+  /// in time that grows with its samples. NaN where they are not there. \return [count]
+  [[nodiscard]] std::vector<double> answers(std::span<const float> pressure, std::size_t samples,
+                                            std::ptrdiff_t from, std::ptrdiff_t first,
+                                            std::ptrdiff_t step, std::size_t count) const;
   /// E|y|² of white noise that is independent from phone to phone. \param density [Pa²/Hz]
   [[nodiscard]] double noise(double density) const noexcept;
 

@@ -6,11 +6,14 @@ from __future__ import annotations
 import numpy as np
 
 from . import style
-from .study_data import Study, SummaryTable, spoken
+from .study_data import Column, Study, SummaryTable, spoken
 
 MOST_PANELS = 12
 MOST_BESIDE = 6  # inputs of two maps side by side
 YES_OR_NO = ("detected", "false_alarm")
+CELL_WORDS = {"pfa": "false-alarm rate", "k_shape": "shape of the K distribution (high: Rayleigh)"}
+CELLS = "roc_cells"  # the table of all cells without an echo
+RAYLEIGH = 1e4  # a shape of the K distribution that nobody tells from it
 TAIL = 0.1  # share of the values without an echo that the tail of an ROC is drawn after
 DETAILS = ("path", "echo_time", "noise_level", "series_")  # measures that are left out first
 
@@ -62,6 +65,9 @@ def band(axes, table: SummaryTable, x: str, y: str, colour: str, label: str | No
     """An estimate with its interval: a line and a band, or, of categories, dots and bars."""
     at, value = table[x], table[y]
     low, high = table[f"{y}_low"].values, table[f"{y}_high"].values
+    if y == "k_shape":  # without end: Rayleigh
+        value = Column(y, value.unit, value.meaning, np.minimum(value.values, RAYLEIGH))
+        high = np.minimum(high, RAYLEIGH)
     if at.labels:
         place = np.arange(at.values.size)
         axes.errorbar(place, value.values, [value.values - low, high - value.values], fmt="o",
@@ -91,6 +97,29 @@ def varying(table: SummaryTable) -> list:
     return [n for n in banded(table) if not table[n].is_constant() or table[n].values.size == 1]
 
 
+def beside(table: SummaryTable, name: str) -> bool:
+    """Whether a column is the false-alarm rate that stands beside a probability of detection."""
+    return name == "pfa" and table.name.startswith("pd")
+
+
+def rate_axis(axes, table: SummaryTable, name: str) -> None:
+    """Small probabilities and shapes by their logarithm, and the rate that is set."""
+    low, high = table[f"{name}_low"].values, table[f"{name}_high"].values
+    there = np.concatenate([low, table[name].values, high])
+    there = there[np.isfinite(there) & (there > 0.0)]
+    if not there.size:
+        return
+    axes.set_yscale("log")
+    least, most = there.min() / 1.5, there.max() * 1.5
+    if name == "pfa" and "pfa_set" in table:
+        wanted = table["pfa_set"].values[0]
+        axes.axhline(wanted, color=style.GREY, lw=1.0, ls=":")
+        axes.annotate("as it is set", (0.99, wanted), xycoords=("axes fraction", "data"),
+                      ha="right", va="bottom", fontsize=8.5, color=style.NOTE)
+        least, most = max(min(least, wanted / 3.0), wanted / 300.0), min(max(most, 3.0 * wanted), 1.0)
+    axes.set_ylim(least, most)
+
+
 def drawn(table: SummaryTable) -> list:
     """Of varying(): as many as there are panels for, what was detected and where before details."""
     return sorted(varying(table), key=lambda n: n.startswith(DETAILS))[:MOST_PANELS]
@@ -107,7 +136,11 @@ def title(table: SummaryTable, names: list) -> str:
     """What a table along inputs shows: "Probability of detection against range"."""
     every = len(varying(table))
     some = f", {len(names)} of {every} measures" if len(names) < every else ""
-    what = spoken(names[0]) if len(names) == 1 and names[0].startswith(("pd", "pfa")) else "means"
+    alone = [n for n in names if not beside(table, n)] or names
+    what = spoken(alone[0]) if alone[0].startswith(("pd", "pfa")) else "means"
+    what += ", and the false-alarm rate," if len(alone) < len(names) else ""
+    if table.name.startswith("cells"):
+        return f"Cells without an echo: {' and '.join(CELL_WORDS.get(n, n) for n in names)} against time"
     along = " and ".join(spoken(n) for n in axes_of(table))
     return f"{what[0].upper()}{what[1:]} against {along}{some}"
 
@@ -131,8 +164,11 @@ def draw_by(study: Study) -> dict:
         for k, (name, a) in enumerate(zip(names, axes)):
             band(a, table, axes_of(table)[0], name, style.colour(k + 1))
             orient(a.yaxis, table[name])
-            a.set_ylabel(table[name].label())
-            if table[name].values.size and not table.name.startswith("means"):
+            a.set_ylabel(CELL_WORDS.get(name, table[name].label())
+                         if table.name.startswith("cells") else table[name].label())
+            if beside(table, name) or table.name.startswith("cells"):
+                rate_axis(a, table, name)
+            elif table[name].values.size and not table.name.startswith("means"):
                 limit = top(table[f"{name}_high"].values)
                 a.set_ylim(-0.02 * limit, limit)
         figures[table.name] = fig
@@ -171,7 +207,7 @@ def draw_map(study: Study) -> dict:
     """Probabilities over two inputs, as a map."""
     figures = {}
     for table in study.tables(lambda t: "_by_" in t.name and len(axes_of(t)) == 2):
-        names = drawn(table)
+        names = [n for n in drawn(table) if not beside(table, n)]
         x, y = (table[n] for n in axes_of(table))
         across, down = bins(table, x), bins(table, y)
         cells = (across.size - 1, down.size - 1)
@@ -241,24 +277,56 @@ def operating_point(study: Study, suffix: str):
     return pfa, pd, z * np.sqrt(max(pd * (1.0 - pd), 1e-12) / hits.size)
 
 
+def roc_of_cells(axes, study: Study, table: SummaryTable, shade: str, name: str) -> float:
+    """The curve of all cells without an echo, with the intervals of both probabilities. → the least
+    probability of false alarm
+    """
+    pfa, pd, tail = (table[n].values for n in ("pfa", "pd", "by_tail"))
+    good = pfa > 0.0
+    pfa, pd, tail = pfa[good], pd[good], tail[good] > 0.5
+    bands = {n: table[n].values[good] for n in ("pfa_low", "pfa_high", "pd_low", "pd_high")}
+    axes.fill_between(pfa, bands["pd_low"], bands["pd_high"], color=shade, alpha=0.2, lw=0)
+    axes.fill_betweenx(pd, np.maximum(bands["pfa_low"], 1e-12), bands["pfa_high"], color=shade,
+                       alpha=0.2, lw=0)
+    counted = ~tail
+    joined = tail | np.append(tail[1:], False) | np.insert(tail[:-1], 0, False)  # without a gap
+    axes.plot(pfa[counted], pd[counted], color=shade,
+              label=name or f"all cells without an echo, counted, {study.interval}")
+    if tail.any():
+        axes.plot(pfa[joined], pd[joined], color=shade, ls=(0, (4, 2)),
+                  label=None if name else "by the tail that is fitted to them")
+    return float(pfa.min(initial=1.0))
+
+
 def draw_roc(study: Study) -> dict:
     """From the operating point's neighbourhood to 1: solid where false alarms were counted, dashed
-    where their law goes on.
+    where their law goes on. Where all cells were counted, theirs instead of one a realisation.
     """
     tables = study.tables(lambda t: t.name.startswith("roc") and "pfa" in t and "pd" in t)
+    of_cells = [t.name for t in tables if t.name.startswith(CELLS)]
+    tables = [t for t in tables if CELLS + t.name[3:] not in of_cells]
     if not tables:
         return {}
     fig, axes = style.figure("Receiver operating characteristic", 4.9)
     least = 1.0
     guessed = False
     for k, table in enumerate(tables):
-        suffix = table.name[3:]
+        cells = table.name in of_cells
+        suffix = table.name[len(CELLS) if cells else 3:]
         shade = style.colour(k)
         pfa, pd = table["pfa"].values, table["pd"].values
         # of thresholds with as many false alarms the one that detects the most
         seen = (pfa > 0) & np.append(np.diff(pfa) > 0, True)
         counted = pfa[seen].min(initial=1.0)
-        name = table.name[4:].replace("_", " ")
+        name = suffix[1:].replace("_", " ")
+        if cells:
+            least = min(least, roc_of_cells(axes, study, table, shade, name))
+            point = operating_point(study, suffix)
+            if point:
+                axes.errorbar(*point, fmt="D", ms=6, color=shade, capsize=3, mec=style.PAPER,
+                              mew=0.8, zorder=5, label=f"{name + ': ' if name else ''}operating "
+                              f"point, P_fa {point[0]:.2g}, P_d {point[1]:.3f}".replace("_", ""))
+            continue
         axes.fill_between(pfa[seen], table["pd_low"].values[seen], table["pd_high"].values[seen],
                           color=shade, alpha=0.2, lw=0)
         axes.plot(pfa[seen], pd[seen], color=shade,

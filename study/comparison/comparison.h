@@ -28,7 +28,7 @@ struct Comparison {
 /// "differences" of every measure; of each axis that [summary] of the first study has, and each
 /// measure, "pd_by_range", …. Columns of a study NAME: pd_NAME with its interval; of each pair
 /// A_to_B (B less A) with its interval and p-value; `best`: which study is better than each other
-/// by its interval. Source: docs/theory/studies.md, eq. (12)–(13)
+/// by its interval. Source: docs/theory/studies.md, eq. (22)–(23)
 /// \param studies  two or more, of one seed and
 /// design \throws InputError where there is nothing to compare
 [[nodiscard]] Comparison compare(const std::vector<Compared>& studies);

@@ -69,7 +69,8 @@ Fingerprint fingerprint_of(const Study& study) {
           .overrides = study.overrides,
           .warnings = std::move(judgement.warnings),
           .left_out_db = judgement.left_out_db,
-          .columns = std::move(all)};
+          .columns = std::move(all),
+          .cells = cell_shape(study)};
 }
 
 std::string to_json(const std::vector<Column>& columns) {

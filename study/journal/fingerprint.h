@@ -26,6 +26,7 @@ struct Fingerprint {
   /// Of the levels, by paths of more bounces, estimated [dB]; not a number: not known.
   double left_out_db = std::numeric_limits<double>::quiet_NaN();
   std::vector<Column> columns{};  ///< with those that tell what was reused
+  CellShape cells{};              ///< of those that are counted
 };
 
 [[nodiscard]] Fingerprint fingerprint_of(const Study& study);

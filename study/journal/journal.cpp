@@ -73,6 +73,29 @@ void Journal::append(const Row& row) {
   impl_->append(row);
 }
 
+void Journal::import_cells(const CellSums& sums) {
+  const std::lock_guard lock(impl_->mutex);
+  impl_->commit();
+  const std::vector<std::uint8_t> bytes = bytes_of(sums);
+  const std::string sum = checksum_of_cells(bytes);
+  sqlite::Statement(impl_->database, "REPLACE INTO cells VALUES(-1,?,?)")
+      .bind(0, std::as_bytes(std::span(bytes)))
+      .bind(1, sum)
+      .run();
+}
+
+CellSums Journal::imported_cells() const {
+  const std::lock_guard lock(impl_->mutex);
+  sqlite::Statement get(impl_->database, "SELECT counts,checksum FROM cells WHERE idx=-1");
+  if (!get.step()) return {};
+  const auto bytes = vector_of<std::uint8_t>(get.blob(0));
+  if (get.text(1) != checksum_of_cells(bytes))
+    throw RunError(path().string() +
+                   ": the cells of rows that came from a file were damaged; "
+                   "--fresh begins anew");
+  return cell_sums_of(bytes);
+}
+
 void Journal::drop_skipped() {
   const std::lock_guard lock(impl_->mutex);
   std::vector<std::uint64_t> skipped;
@@ -116,11 +139,12 @@ std::vector<Session> Journal::sessions() const {
 void Journal::rows(IndexRange range, bool pressure, const std::function<void(Row&&)>& take) const {
   const std::lock_guard lock(impl_->mutex);
   sqlite::Statement get(impl_->database,
-                        "SELECT idx,valid,fault,vals,kept,checksum FROM row"
-                        " WHERE idx>=? AND idx<? ORDER BY idx");
+                        "SELECT r.idx,valid,fault,vals,kept,r.checksum,counts FROM row r"
+                        " LEFT JOIN cells c ON c.idx=r.idx"
+                        " WHERE r.idx>=? AND r.idx<? ORDER BY r.idx");
   get.bind(0, static_cast<std::int64_t>(range.first)).bind(1, static_cast<std::int64_t>(range.end));
   while (get.step()) {
-    Row row = impl_->row_at(get);
+    Row row = impl_->row_at(get, 6);
     const bool kept = get.integer(4) != 0;
     const bool good =
         get.text(5) == checksum(row, kept) && (!kept || !pressure || impl_->add_series(row));

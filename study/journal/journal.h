@@ -35,6 +35,9 @@ class Journal {
   void add(const Session& session);
   /// A row of an index that is there already replaces it.
   void append(const Row& row);
+  /// Sums of the cells of rows that come from a file, which tells them no more by row.
+  void import_cells(const CellSums& sums);
+  [[nodiscard]] CellSums imported_cells() const;
   /// Throws the rows that were skipped away.
   void drop_skipped();
   void commit();

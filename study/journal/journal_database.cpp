@@ -20,7 +20,8 @@ constexpr const char* schema =
     "CREATE TABLE IF NOT EXISTS row(idx INTEGER PRIMARY KEY, valid INTEGER, fault TEXT,"
     " vals BLOB, kept INTEGER, checksum TEXT);"
     "CREATE TABLE IF NOT EXISTS series(idx INTEGER PRIMARY KEY, shape TEXT, timing TEXT,"
-    " pressure BLOB, checksum TEXT);";
+    " pressure BLOB, checksum TEXT);"
+    "CREATE TABLE IF NOT EXISTS cells(idx INTEGER PRIMARY KEY, counts BLOB, checksum TEXT);";
 
 }  // namespace
 
@@ -68,10 +69,11 @@ void Journal::Impl::check_rows() {
   {
     sqlite::Statement get(
         database,
-        "SELECT r.idx,r.valid,r.fault,r.vals,r.kept,r.checksum,COALESCE(s.idx,-1) FROM row r"
-        " LEFT JOIN series s ON s.idx=r.idx ORDER BY r.idx");
+        "SELECT r.idx,r.valid,r.fault,r.vals,r.kept,r.checksum,COALESCE(s.idx,-1),c.counts"
+        " FROM row r LEFT JOIN series s ON s.idx=r.idx LEFT JOIN cells c ON c.idx=r.idx"
+        " ORDER BY r.idx");
     while (get.step()) {
-      const Row row = row_at(get);
+      const Row row = row_at(get, 7);
       const bool kept = get.integer(4) != 0;
       if (get.text(5) == checksum(row, kept) && (!kept || get.integer(6) == get.integer(0)) &&
           get.integer(0) >= 0 && row.values.size() == width)
@@ -82,16 +84,23 @@ void Journal::Impl::check_rows() {
   }
   for (const std::uint64_t index : bad) drop(index);
   damaged = bad.size();
+  sqlite::Statement imported(database, "SELECT idx FROM cells WHERE idx=-1");
+  if (damaged > 0 && imported.step())
+    throw RunError(
+        database.path().string() +
+        ": rows were damaged, and the cells of rows that came from a file cannot be told "
+        "apart from theirs; --fresh begins anew");
 }
 
-Row Journal::Impl::row_at(const sqlite::Statement& get) const {
+Row Journal::Impl::row_at(const sqlite::Statement& get, int cells) const {
   return {.index = static_cast<std::uint64_t>(get.integer(0)),
           .valid = get.integer(1) != 0,
           .fault = get.text(2),
           .values = vector_of<double>(get.blob(3)),
           .pressure = {},
           .pressure_shape = {},
-          .reuse = {}};
+          .reuse = {},
+          .cells = vector_of<std::uint8_t>(get.blob(cells))};
 }
 
 bool Journal::Impl::add_series(Row& row) const {
@@ -110,7 +119,8 @@ bool Journal::Impl::add_series(Row& row) const {
 }
 
 void Journal::Impl::drop(std::uint64_t index) const {
-  for (const char* sql : {"DELETE FROM row WHERE idx=?", "DELETE FROM series WHERE idx=?"})
+  for (const char* sql : {"DELETE FROM row WHERE idx=?", "DELETE FROM series WHERE idx=?",
+                          "DELETE FROM cells WHERE idx=?"})
     sqlite::Statement(database, sql).bind(0, static_cast<std::int64_t>(index)).run();
 }
 
@@ -118,6 +128,7 @@ void Journal::Impl::start() {
   check_rows();
   insert_row.emplace(database, "REPLACE INTO row VALUES(?,?,?,?,?,?)");
   insert_series.emplace(database, "REPLACE INTO series VALUES(?,?,?,?,?)");
+  insert_cells.emplace(database, "REPLACE INTO cells VALUES(?,?,NULL)");
   committer = std::jthread([this](const std::stop_token& over) {
     using Clock = std::chrono::steady_clock;
     auto last = Clock::now();
@@ -142,7 +153,14 @@ void Journal::Impl::append(const Row& row) {
   if (fault) std::rethrow_exception(fault);
   if (!pending) database.execute("BEGIN");
   pending = true;
-  Row clean{.index = row.index, .valid = row.valid, .fault = row.fault, .values = row.values};
+  Row clean{.index = row.index,
+            .valid = row.valid,
+            .fault = row.fault,
+            .values = row.values,
+            .pressure = {},
+            .pressure_shape = {},
+            .reuse = {},
+            .cells = row.cells};
   one_kind_of_nan(clean.values);
   const bool kept = !row.pressure.empty();
   const auto index = static_cast<std::int64_t>(row.index);
@@ -166,6 +184,8 @@ void Journal::Impl::append(const Row& row) {
         .bind(4, series_sum)
         .run();
   }
+  if (!row.cells.empty())
+    insert_cells->bind(0, index).bind(1, std::as_bytes(std::span(clean.cells))).run();
   done.add(row.index);
   if (session) ++session->rows;
 }
@@ -194,6 +214,7 @@ void Journal::Impl::close() {
   commit();
   insert_row.reset();
   insert_series.reset();
+  insert_cells.reset();
   database.close();
 }
 

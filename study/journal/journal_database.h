@@ -46,7 +46,8 @@ struct Journal::Impl {
   void commit();
   void close();
   void finish_session();
-  [[nodiscard]] Row row_at(const sqlite::Statement& get) const;
+  /// \param cells  which column has them
+  [[nodiscard]] Row row_at(const sqlite::Statement& get, int cells) const;
   [[nodiscard]] bool add_series(Row& row) const;
   void drop(std::uint64_t index) const;
   [[nodiscard]] std::int64_t next_session() const {
@@ -60,7 +61,7 @@ struct Journal::Impl {
   std::uint64_t damaged = 0;
 
   mutable std::mutex mutex;  // of everything below and of the connection
-  std::optional<sqlite::Statement> insert_row, insert_series;
+  std::optional<sqlite::Statement> insert_row, insert_series, insert_cells;
   bool pending = false;  // a transaction is open
   std::exception_ptr fault;
   std::optional<Session> session;

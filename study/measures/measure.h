@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sonar/ping/ping.h"
+#include "study/measures/echo_filter.h"
 #include "study/measures/realisation.h"
 #include "study/measures/receiver_measure.h"
 #include "study/plan/measure_plan.h"
@@ -37,8 +38,9 @@ struct MeasuredPing {
   const MeasurePlan& plan;
   const Scenario& scenario;
   const PingSimulator* simulator = nullptr;
-  const PingRecord* record = nullptr;  ///< null: columns alone are wanted
-  ReceiverAnswers receiver = {};       ///< [targets], if the plan uses it
+  const PingRecord* record = nullptr;         ///< null: columns alone are wanted
+  ReceiverAnswers receiver = {};              ///< [targets], if the plan uses it
+  std::vector<ExpectedAnswer> expected = {};  ///< [targets], if the plan's background is expected
 
   [[nodiscard]] explicit operator bool() const noexcept { return record != nullptr; }
   /// Of one target. There is a record.

@@ -1,5 +1,10 @@
 #include "study/measures/measures.h"
 
+#include <algorithm>
+#include <limits>
+
+#include "core/random.h"
+#include "study/measures/cell_counts.h"
 #include "study/measures/echo_filter.h"
 
 namespace asdic::detail::study {
@@ -40,6 +45,46 @@ PingRecord received(const PingSimulator& simulator, const MeasurePlan& plan) {
   });
 }
 
+/// The same sea and noise, drawn anew and without targets, as often as the plan says.
+std::vector<ExpectedAnswer> expected_of(const PingSimulator& simulator, const PingRecord& record,
+                                        const MeasurePlan& plan,
+                                        const std::shared_ptr<SharedPropagation>& shared) {
+  const auto draw = [&](int k, const SampleRange& part) {
+    Scenario scenario = simulator.scenario();
+    const auto words =
+        RandomStream(scenario.seed, Draw::study_noise, 1, static_cast<std::uint64_t>(k)).block(0);
+    scenario.seed = (static_cast<std::uint64_t>(words[0]) << 32) | words[1];
+    for (Target& target : scenario.targets) target.first_ping = std::numeric_limits<int>::max();
+    PingSimulator drawn(std::move(scenario), shared);
+    drawn.receives_one_ping();
+    return drawn.simulate(plan.ping, [&](const PingRecord&) { return part; });
+  };
+  return expected_answers(simulator, record, plan.matched_filter, plan.array,
+                          plan.cells.has_value(), draw);
+}
+
+/// All cells without an echo, by target, time and level.
+std::vector<std::uint8_t> counted_cells(const PingSimulator& simulator, const PingRecord& record,
+                                        const MeasurePlan& plan,
+                                        const std::vector<ExpectedAnswer>& expected) {
+  const std::vector<double>& edges = plan.cells->edges;
+  const std::vector<double> levels = cell_levels(plan.false_alarm_probability());
+  const std::size_t times = edges.size() - 1;
+  std::vector<std::uint32_t> counts(record.targets.size() * times * levels.size(), 0);
+  for (std::size_t target = 0; target < record.targets.size(); ++target)
+    for (const FreeCell& cell :
+         free_cells(simulator, record, plan.matched_filter, plan.array, static_cast<int>(target),
+                    expected.empty() ? ExpectedAnswer{} : expected[target])) {
+      if (cell.time < edges.front() || cell.time >= edges.back() || !(cell.level >= 0.0)) continue;
+      const auto place = [](const std::vector<double>& of, double x) {
+        return static_cast<std::size_t>(std::upper_bound(of.begin(), of.end(), x) - of.begin()) - 1;
+      };
+      ++counts[(target * times + place(edges, cell.time)) * levels.size() +
+               place(levels, cell.level)];
+    }
+  return packed_counts(counts);
+}
+
 /// One pass over the measures that are wanted.
 void walk(std::span<const AnyMeasure> measures, MeasuredPing ping, Collector& to) {
   const std::vector<Target>& targets = ping.scenario.targets;
@@ -68,14 +113,22 @@ std::vector<Column> measure_columns(const Study& study, const Scenario& scenario
 }
 
 Measured measure(const Study& study, const PingSimulator& simulator,
-                 std::span<const AnyMeasure> measures) {
-  Measured made{.record = received(simulator, study.measure)};
+                 std::span<const AnyMeasure> measures,
+                 const std::shared_ptr<SharedPropagation>& shared) {
+  const MeasurePlan& plan = study.measure;
+  Measured made{.record = received(simulator, plan)};
+  std::vector<ExpectedAnswer> expected;
+  if (plan.uses_matched_filter() &&
+      plan.matched_filter.background == MatchedFilterPlan::Background::expected)
+    expected = expected_of(simulator, made.record, plan, shared);
+  if (plan.cells) made.cells = counted_cells(simulator, made.record, plan, expected);
   Collector collector(made.values);
   walk(measures,
        {.plan = study.measure,
         .scenario = simulator.scenario(),
         .simulator = &simulator,
-        .record = &made.record},
+        .record = &made.record,
+        .expected = std::move(expected)},
        collector);
   return made;
 }

@@ -1,5 +1,7 @@
 #pragma once
 #include <array>
+#include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -31,11 +33,14 @@ inline constexpr std::span<const AnyMeasure> all_measures =
 
 /// What one realisation's ping measures.
 struct Measured {
-  std::vector<double> values;  ///< [measure columns]
-  PingRecord record;           ///< with samples, where the plan needs any
+  std::vector<double> values;         ///< [measure columns]
+  PingRecord record;                  ///< with samples, where the plan needs any
+  std::vector<std::uint8_t> cells{};  ///< packed_counts(), where cells are counted
 };
-/// \param simulator  of the realisation's scenario   \throws InputError
+/// \param simulator  of the realisation's scenario   \param shared  what draws of its background
+/// have in common with others   \throws InputError
 [[nodiscard]] Measured measure(const Study& study, const PingSimulator& simulator,
-                               std::span<const AnyMeasure> measures = all_measures);
+                               std::span<const AnyMeasure> measures = all_measures,
+                               const std::shared_ptr<SharedPropagation>& shared = nullptr);
 
 }  // namespace asdic::detail::study

@@ -74,6 +74,13 @@ std::vector<Column> columns(const Study& study) {
   return all;
 }
 
+CellShape cell_shape(const Study& study) {
+  if (!study.measure.cells) return {};
+  return {.targets = example_of(study).targets.size(),
+          .edges = study.measure.cells->edges,
+          .levels = cell_levels(study.measure.false_alarm_probability())};
+}
+
 struct Realiser::Impl {
   Impl(Study made, int processes)
       : study(std::move(made)),
@@ -139,9 +146,10 @@ Row Realiser::Impl::make(std::uint64_t index, double bytes) {
     scenario.seed = seed_of(study, sampler.chance_of(index));
     PingSimulator simulator(std::move(scenario), shared, budget.share(bytes, "a row's share"));
     simulator.receives_one_ping();
-    Measured measured = measure(study, simulator);
+    Measured measured = measure(study, simulator, all_measures, shared);
     row.reuse = reuse_of(measured.record.reuse);
     row.values.insert(row.values.end(), measured.values.begin(), measured.values.end());
+    row.cells = std::move(measured.cells);
     for (const OwnMeasure& own : study.measure.own)
       row.values.push_back(own.of(tree, simulator, measured.record));
     if (keeps_series(study.measure, index))

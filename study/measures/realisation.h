@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "study/measures/cell_counts.h"
 #include "study/plan/study.h"
 
 namespace asdic::detail::study {
@@ -37,12 +38,16 @@ struct Row {
   std::vector<double> values;   ///< [columns]
   std::vector<float> pressure;  ///< kept time series, empty where none [channels × samples × iq]
   std::vector<std::size_t> pressure_shape;
-  SeriesTiming timing{};      ///< of the time series
-  std::vector<double> reuse;  ///< [reuse_columns()] what was known before it was made
+  SeriesTiming timing{};              ///< of the time series
+  std::vector<double> reuse;          ///< [reuse_columns()] what was known before it was made
+  std::vector<std::uint8_t> cells{};  ///< packed_counts() of those without an echo, if counted
 };
 
 /// The columns of a study's rows: inputs first, in the order of [vary], then measures.
 [[nodiscard]] std::vector<Column> columns(const Study& study);
+
+/// Of the cells that are counted in each row.
+[[nodiscard]] CellShape cell_shape(const Study& study);
 
 /// What a realisation found known (raytrace/places/reuse.h), NaN of one that was skipped. It tells
 /// of the run: of two alike the first one searches, whichever that is; their rows are the same.

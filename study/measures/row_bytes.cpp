@@ -24,7 +24,12 @@ std::string checksum(const Row& row, bool kept) {
   std::string text = std::to_string(row.index) + (row.valid ? "v" : "-") + (kept ? "k" : "-") +
                      std::to_string(row.fault.size()) + row.fault;
   text += view(bytes_of(row.values));
+  text += view(bytes_of(row.cells));
   return checksum(text);
+}
+
+std::string checksum_of_cells(const std::vector<std::uint8_t>& bytes) {
+  return checksum(view(bytes_of(bytes)));
 }
 
 std::string shape_text(const std::vector<std::size_t>& shape) {

@@ -25,6 +25,8 @@ template <class T>
 
 /// Of a row without its time series. \param kept  whether it has one
 [[nodiscard]] std::string checksum(const Row& row, bool kept);
+/// Of sums of cells.
+[[nodiscard]] std::string checksum_of_cells(const std::vector<std::uint8_t>& bytes);
 /// Of the time series alone. \param shape, timing  as shape_text() and timing_text() write them
 [[nodiscard]] std::string checksum_of_series(std::uint64_t index, const std::string& shape,
                                              const std::string& timing,

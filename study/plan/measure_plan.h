@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -22,12 +23,26 @@ namespace asdic::detail::study {
 struct MatchedFilterPlan {
   /// What the answer is compared with.
   enum class Background {
-    around,  ///< the mean of free cells before and after it (cell averaging)
-    noise    ///< the ambient noise as the scenario gives it: white and independent, nothing else
+    around,    ///< the mean of free cells before and after it (cell averaging)
+    trend,     ///< the same cells, of which the level may rise or fall evenly in dB
+    expected,  ///< the mean over draws of noise and scatterers at the very time, without targets
+    noise      ///< the ambient noise as the scenario gives it: white and independent, nothing else
   };
   Background background = Background::around;
   std::optional<int> phone;  ///< of the array alone, from 0; none: a beam to where the echo is from
   double guard_cells = 2.0, reference_cells = 12.0;  ///< on either side, of 1/noise bandwidth
+  int draws = 24;                                    ///< of the expected background
+
+  /// Values that the background is estimated from: ∞ where it is known.
+  [[nodiscard]] double estimated_from() const noexcept {
+    if (background == Background::noise) return std::numeric_limits<double>::infinity();
+    return background == Background::expected ? draws : 2.0 * reference_cells;
+  }
+};
+
+/// All cells of the record without an echo, counted by time after the ping.
+struct CellPlan {
+  std::vector<double> edges;  ///< of the bins of time [s]
 };
 
 /// Detection of each target.
@@ -69,6 +84,7 @@ struct MeasurePlan {
   Needs needs;                       ///< of any of these
   MatchedFilterPlan matched_filter;  ///< how the matched filter's answers are had
   std::optional<DetectionPlan> detection;
+  std::optional<CellPlan> cells;   ///< of the matched filter
   ProcessingSettings receiver;     ///< of detection by = "receiver", localisation
   std::vector<OwnMeasure> own;     ///< after all others
   std::uint64_t series_every = 0;  ///< the time series of every k-th index; 0: none
@@ -84,6 +100,10 @@ struct MeasurePlan {
   [[nodiscard]] bool own_takes_samples() const noexcept {
     return std::any_of(own.begin(), own.end(), [](const OwnMeasure& one) { return one.samples; });
   }
+  /// Of a cell, that thresholds are for.
+  [[nodiscard]] double false_alarm_probability() const noexcept {
+    return detection ? detection->false_alarm_probability : DetectionPlan().false_alarm_probability;
+  }
   [[nodiscard]] bool uses_receiver() const noexcept {
     return needs.receiver || (detection && detection->by == DetectionPlan::By::receiver);
   }
@@ -93,8 +113,8 @@ struct MeasurePlan {
   }
   /// Whether of the samples only those count that a matched filter looks at.
   [[nodiscard]] bool filter_alone() const noexcept {
-    return uses_matched_filter() && !uses_receiver() && !needs.samples && series_every == 0 &&
-           !own_takes_samples();
+    return uses_matched_filter() && !cells && !uses_receiver() && !needs.samples &&
+           series_every == 0 && !own_takes_samples();
   }
 };
 

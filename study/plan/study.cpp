@@ -115,6 +115,13 @@ std::string identity(const Study& study) {
   for (const char* table : {"vary", "correlation", "measure"})
     if (const TomlValue* value = study.document.find(table))
       write(*value, "", study.path.parent_path(), text);
+  // Rows made when it was "around" that was left out are others.
+  const TomlValue* measure = study.document.find("measure");
+  const TomlValue* filter = measure == nullptr ? nullptr : measure->find("matched_filter");
+  if (study.measure.uses_matched_filter() &&
+      study.measure.matched_filter.background == MatchedFilterPlan::Background::expected &&
+      (filter == nullptr || filter->find("background") == nullptr))
+    text += "background=expected;";
   // The order of the variables is that of their lines, which the tree does not tell.
   for (const Variable& variable : study.variables) text += variable.name + ";" + variable.digest;
   for (const OwnMeasure& own : study.measure.own)

@@ -1,8 +1,11 @@
 #include "study/reader/measure_reader.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "io/settings/reader.h"
+#include "sonar/scenario/sampling.h"
 #include "sonar/scenario/transmission.h"
 #include "study/measures/measures.h"
 
@@ -16,13 +19,25 @@ bool read_wanted(TomlTable& table, const std::string& key) {
 }
 
 void read_matched_filter(TomlTable table, int phones, MatchedFilterPlan& plan) {
-  if (table.choice("background", {"around", "noise"}, "around") == "noise")
-    plan.background = MatchedFilterPlan::Background::noise;
+  using Background = MatchedFilterPlan::Background;
+  // Whoever says which cells wants cells.
+  const bool cells = table.has("guard_cells") || table.has("reference_cells");
+  const std::string background = table.choice(
+      "background", {"around", "trend", "expected", "noise"}, cells ? "around" : "expected");
+  plan.background = background == "trend"      ? Background::trend
+                    : background == "expected" ? Background::expected
+                    : background == "noise"    ? Background::noise
+                                               : Background::around;
   if (table.has("phone")) plan.phone = static_cast<int>(table.integer("phone", 0, phones - 1));
   plan.guard_cells = static_cast<double>(
       table.integer("guard_cells", 0, 1000, static_cast<std::int64_t>(plan.guard_cells)));
   plan.reference_cells = static_cast<double>(
       table.integer("reference_cells", 1, 1000, static_cast<std::int64_t>(plan.reference_cells)));
+  if (table.has("draws")) {
+    if (plan.background != Background::expected)
+      throw table.fault("draws", "background = \"expected\" with it, whose draws they are");
+    plan.draws = static_cast<int>(table.integer("draws", 2, 10000));
+  }
   table.finish();
 }
 
@@ -36,6 +51,32 @@ DetectionPlan read_detection(TomlTable& measures) {
       table.number("false_alarm_probability", false_alarm_probability_of_cell,
                    plan.by == DetectionPlan::By::receiver ? 1e-6 : 1e-4);
   table.finish();
+  return plan;
+}
+
+/// `true`, or a table: bins of time over the record as the scenario has it.
+CellPlan read_cells(TomlTable& measures, const Scenario& scenario) {
+  CellPlan plan;
+  const Recording record = recording_of(scenario);
+  int bins = 10;
+  if (measures.is_table("cells")) {
+    TomlTable table = measures.table("cells");
+    if (table.has("edges")) {
+      plan.edges = table.numbers("edges", {});
+      const bool rising =
+          plan.edges.size() > 1 && std::adjacent_find(plan.edges.begin(), plan.edges.end(),
+                                                      std::greater_equal<>()) == plan.edges.end();
+      if (!rising) throw table.fault("edges", "two times or more that rise [s]");
+    }
+    if (table.has("bins")) {
+      if (!plan.edges.empty()) throw table.fault("bins", "edges or bins, not both");
+      bins = static_cast<int>(table.integer("bins", 1, 1000));
+    }
+    table.finish();
+  }
+  const double length = static_cast<double>(record.samples) / record.sample_rate;
+  if (!plan.edges.empty()) return plan;
+  for (int i = 0; i <= bins; ++i) plan.edges.push_back(record.start + length * i / bins);
   return plan;
 }
 
@@ -92,6 +133,11 @@ MeasurePlan read_measure(TomlTable table, const Scenario& scenario) {
   if (table.has("matched_filter") && !plan.uses_matched_filter())
     throw table.fault("matched_filter", "snr_matched or a detection by the matched filter with it");
   read_matched_filter(table.table("matched_filter"), phones, plan.matched_filter);
+  if (read_wanted(table, "cells")) {
+    if (!plan.uses_matched_filter())
+      throw table.fault("cells", "snr_matched or a detection by the matched filter with it");
+    plan.cells = read_cells(table, scenario);
+  }
   if (table.has("receiver") && !plan.uses_receiver())
     throw table.fault("receiver", "localisation_error or a detection by the receiver with it");
   read_receiver(table.table("receiver"), plan);

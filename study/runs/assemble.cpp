@@ -10,6 +10,7 @@ void add(Table& table, const Row& row) {
   table.valid.push_back(row.valid ? 1 : 0);
   for (std::size_t i = 0; i < table.columns.size(); ++i)
     table.values[i].push_back(row.values.at(i));
+  if (row.valid && !table.cells.empty()) table.cells.add(std::span<const std::uint8_t>(row.cells));
 }
 
 std::string one_line(std::string text) {
@@ -41,12 +42,14 @@ std::vector<Segment> segments(const std::vector<const Journal*>& journals, Index
 
 bool assemble(OutputFile& output, const Fingerprint& fingerprint, IndexRange range,
               const std::vector<const Journal*>& journals, const Summarise& summarise,
-              const std::string& stopped_by) {
+              const std::string& stopped_by, std::vector<std::string>* warnings) {
   StudyResults results{.fingerprint = fingerprint, .range = range, .stopped_by = stopped_by};
   results.table.columns = fingerprint.columns;
   results.table.values.resize(fingerprint.columns.size());
+  results.table.cells = cell_sums(fingerprint.cells);
   SeriesSource series;
   std::vector<std::size_t> home;  // [kept] which journal
+  for (const Journal* journal : journals) results.table.cells.add(journal->imported_cells());
   for (const Segment& segment : segments(journals, range)) {
     const Journal& journal = *journals[segment.journal];
     journal.rows(segment.range, false, [&](Row&& row) {
@@ -71,6 +74,7 @@ bool assemble(OutputFile& output, const Fingerprint& fingerprint, IndexRange ran
     for (const Session& session : journal->sessions()) results.sessions.push_back(session);
   results.reuse = take_reuse(results.table);
   results.summary = summarise(results.table);
+  if (warnings != nullptr) *warnings = results.summary.warnings;
   write_study_file(output, results, series);
   return results.complete();
 }

@@ -227,6 +227,7 @@ MergeReport merge(const std::vector<fs::path>& paths, OutputFile& output,
   for (std::size_t p = 0; p < parts.size(); ++p) {
     for (std::string& fault : parts.at(p).faults()) results.faults.push_back(std::move(fault));
     sort_faults(results.faults);
+    results.table.cells.add(parts.at(p).cells());
   }
   series.pressure = [&](std::size_t k) { return parts.at(kept[k].part).series(kept[k].row); };
   results.reuse = take_reuse(results.table);
@@ -235,6 +236,7 @@ MergeReport merge(const std::vector<fs::path>& paths, OutputFile& output,
   write_study_file(output, results, series, catalogue);
   MergeReport report{
       .rows = results.table.index.size(), .realisations = range.size(), .missing = missing};
+  report.warnings = results.summary.warnings;
   if (std::string mixed = mixed_builds(all.sessions); !mixed.empty())
     report.warnings.push_back(std::move(mixed));
   return report;

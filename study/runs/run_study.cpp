@@ -151,6 +151,7 @@ void import_rows(const std::filesystem::path& path, IndexRange range, bool skipp
         !journal.done().contains(row.index))
       journal.append(row);
   }
+  if (!table.cells.empty()) journal.import_cells(table.cells);
   journal.commit();
   for (const Session& session : file.sessions()) journal.add(session);
 }
@@ -281,8 +282,8 @@ void write_output(const Work& work, const StudyRun& run, const OrderedEstimate& 
     outcome.notes = summary.notes;
     return summary;
   };
-  outcome.complete =
-      assemble(output, fingerprint, outcome.range, journals.all(), summarise, stopped_by);
+  outcome.complete = assemble(output, fingerprint, outcome.range, journals.all(), summarise,
+                              stopped_by, &outcome.found);
   outcome.written = true;
   std::vector<Session> sessions;
   for (const Journal* journal : journals.all())

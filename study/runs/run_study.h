@@ -70,6 +70,7 @@ struct StudyOutcome {
   std::vector<Known> known{};        ///< how well is known what --until asks for
   std::string warning{};             ///< mixed builds
   std::vector<std::string> notes{};  ///< what the user should know of the summary
+  std::vector<std::string> found{};  ///< warnings of what came out: the summary's
 };
 
 /// The output of a run: while it lives, nobody else makes this file or its journals.

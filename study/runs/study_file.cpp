@@ -118,7 +118,29 @@ Table StudyFile::table() const {
   for (const Column& column : table.columns)
     table.values.push_back(file_.read<double>(
         (column.role == Column::Role::reuse ? "run/reuse/" : "table/") + column.name));
+  table.cells = cells();
   return table;
+}
+
+CellSums StudyFile::cells() const {
+  if (!file_.has("cells/count")) return {};
+  std::vector<double> edges = file_.read<double>("cells/time_low");
+  const std::vector<double> ends = file_.read<double>("cells/time_high");
+  if (edges.size() < 2 || ends.size() != edges.size()) return {};
+  edges.erase(edges.begin());  // of all times together
+  edges.push_back(ends.back());
+  CellSums sums = cell_sums({.targets = file_.info("cells/realisations").shape.front(),
+                             .edges = std::move(edges),
+                             .levels = file_.read<double>("cells/level")});
+  const auto read = [&](const char* name, std::vector<std::int64_t>& into) {
+    std::vector<std::int64_t> values = file_.read<std::int64_t>(std::string("cells/") + name);
+    if (values.size() == into.size()) into = std::move(values);
+  };
+  read("count", sums.count);
+  read("squares", sums.squares);
+  read("with_all", sums.with_all);
+  read("realisations", sums.realisations);
+  return sums;
 }
 
 std::vector<std::uint64_t> StudyFile::series_index() const {

@@ -46,6 +46,59 @@ void StudyFileWriter::write_table() {
   text("faults", faults, "why realisations were skipped, \"index: reason\" a line, the first 1000");
 }
 
+/// Sums over all rows: of a catalogue too, it has them itself.
+void StudyFileWriter::write_cells() {
+  const CellSums& sums = results_.table.cells;
+  if (sums.empty()) return;
+  const std::size_t targets = sums.shape.targets, times = sums.shape.times() + 1,
+                    levels = sums.shape.levels.size();
+  const std::vector<double>& edges = sums.shape.edges;
+  file_.make_group("cells");
+  file_.write<double>("cells/level", sums.shape.levels, {levels});
+  describe(file_, "cells/level",
+           "-ln P of even Rayleigh noise: lower end of a level, the next one's is its upper", "1");
+  file_.make_scale("cells/level", "level");
+  noted("cells/level", sums.shape.levels);
+  file_.make_dimension("cells/target", targets);
+  describe(file_, "cells/target", "no values: target of the scenario, from 0");
+  file_.make_dimension("cells/time", times);
+  describe(file_, "cells/time", "no values: 0 all times, then the bins");
+  std::vector<double> low{edges.front()}, high{edges.back()};
+  low.insert(low.end(), edges.begin(), edges.end() - 1);
+  high.insert(high.end(), edges.begin() + 1, edges.end());
+  const auto ends = [&](const std::string& name, const std::vector<double>& values) {
+    file_.write<double>("cells/" + name, values, {times});
+    describe(file_, "cells/" + name,
+             name == "time_low" ? "least of the bin, after the ping"
+                                : "greatest of the bin, after the ping",
+             "s");
+    file_.attach_scales("cells/" + name, {"cells/time"});
+    noted("cells/" + name, values);
+  };
+  ends("time_low", low);
+  ends("time_high", high);
+  const auto numbers = [&](const std::string& name, const std::vector<std::int64_t>& values,
+                           const Shape& shape, const std::string& meaning) {
+    const std::string path = "cells/" + name;
+    file_.write<std::int64_t>(path, values, shape);
+    describe(file_, path, meaning);
+    std::vector<std::string> scales{"cells/target", "cells/time"};
+    if (shape.size() > 2) scales.emplace_back("cells/level");
+    file_.attach_scales(path, scales);
+    file_.set_attribute(path, "coordinates", "time_low time_high");
+    Digest digest;
+    digest.add(std::span<const std::int64_t>(values));
+    note(path, shape, digest.text());
+  };
+  const Shape all{targets, times, levels};
+  numbers("count", sums.count, all, "cells without an echo in the level, of all realisations");
+  numbers("squares", sums.squares, all,
+          "sum over realisations of the square of its cells at or above the level");
+  numbers("with_all", sums.with_all, all,
+          "sum over realisations of its cells at or above the level times all of its cells");
+  numbers("realisations", sums.realisations, {targets, times}, "that have a cell there");
+}
+
 void StudyFileWriter::write_series(const SeriesSource& series) {
   if (series.index.empty()) return;
   Shape row = series.shapes.front();  // the longest

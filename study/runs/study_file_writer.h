@@ -22,6 +22,7 @@ class StudyFileWriter {
   void write(const SeriesSource& series) {
     write_root();
     write_table();
+    write_cells();
     write_series(series);
     write_summary();
     write_laws();
@@ -33,6 +34,7 @@ class StudyFileWriter {
  private:
   void write_root();
   void write_table();
+  void write_cells();
   void write_series(const SeriesSource& series);
   void write_summary();
   void write_laws();

@@ -19,7 +19,7 @@ struct Interval {
 [[nodiscard]] Interval wilson(double successes, double count, double confidence) noexcept;
 
 /// Of a proportion, by the binomial's own tails (Clopper & Pearson, Biometrika 26, 404, 1934): its
-/// coverage is at least `confidence`.
+/// coverage is at least `confidence`. [0, 1] for a count of 0; of fractions too, the same law.
 [[nodiscard]] Interval clopper_pearson(double successes, double count, double confidence);
 
 /// Either of them; [0, 1] for a count of 0.

@@ -121,6 +121,10 @@ bool counts(const Table& table, std::size_t row, std::size_t column) noexcept {
 SummaryTable statistics_table(const Study& study, const Table& table) {
   const SummaryPlan& plan = study.summary;
   const Clusters clusters = clusters_of(study);
+  const bool by_filter =
+      study.measure.detection && study.measure.detection->by == DetectionPlan::By::matched_filter;
+  // Of false alarms: what was found, once more by its name, beside what is set.
+  const bool set = by_filter && std::isfinite(study.measure.false_alarm_probability());
   SummaryTable made{.name = "statistics",
                     .title = "Every column over all valid realisations, in its own unit",
                     .axes = {"quantity"}};
@@ -140,6 +144,12 @@ SummaryTable statistics_table(const Study& study, const Table& table) {
   column("greatest", of, "greatest value");
   for (const double p : plan.quantiles) {
     column(quantile_name(p), of, "quantile at " + to_text(p));
+  }
+  if (set) {
+    column("pfa", "1", "of false alarms: the rate that was found");
+    column("pfa_low", "1", "confidence interval (Clopper & Pearson)");
+    column("pfa_high", "1", "confidence interval (Clopper & Pearson)");
+    column("pfa_set", "1", "false-alarm probability that is set");
   }
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     ClusteredMean moments(clusters);
@@ -165,6 +175,18 @@ SummaryTable statistics_table(const Study& study, const Table& table) {
                             sorted.empty() ? none : sorted.back()};
     for (const double p : plan.quantiles)
       row.push_back(sorted.empty() ? none : sample_quantile(sorted, p));
+    if (set) {
+      const bool alarms =
+          is_proportion(table.columns[c]) && table.columns[c].name.starts_with("false_alarm");
+      const double n = moments.count();
+      const Interval found =
+          clopper_pearson(n > 0.0 ? std::round(moments.mean() * n) : 0.0, n, plan.confidence);
+      if (alarms)
+        row.insert(row.end(), {moments.mean(), found.low, found.high,
+                               study.measure.false_alarm_probability()});
+      else
+        row.insert(row.end(), 4, none);
+    }
     for (std::size_t i = 0; i < row.size(); ++i) made.values[i].push_back(row[i]);
   }
   return made;
@@ -252,8 +274,10 @@ Summary summary_of(const Study& study, const Table& table) {
             (blocks                           ? "the rows A and B of every block alone"
              : study.design == Design::random ? "independent rows"
                                               : "rows taken for independent (rather too wide)"));
+  add(cell_tables(study, table), "docs/theory/studies.md, false-alarm rates");
   if (plan.convergence) add(convergence_table(study, table), method);
   made.laws = law_tables(study);
+  made.warnings = rate_warnings(study, made.tables);
   if (!plan.sensitivity) return made;
   std::vector<SummaryTable> sensitivity =
       blocks ? saltelli_tables(study, table) : sensitivity_table(study, table);

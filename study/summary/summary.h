@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "study/measures/cell_counts.h"
 #include "study/measures/realisation.h"
 #include "study/summary/clustered_mean.h"
 #include "study/summary/law_tables.h"
@@ -15,6 +16,7 @@ struct Table {
   std::vector<std::uint64_t> index;         ///< [rows]
   std::vector<std::uint8_t> valid;          ///< [rows]
   std::vector<std::vector<double>> values;  ///< [columns][rows]
+  CellSums cells{};                         ///< of all these rows, where cells are counted
 };
 
 /// A table of the summary: columns of equal length ("pd_by_range": centre, count, pd, low, high).
@@ -38,6 +40,7 @@ struct Summary {
   std::string intervals{};                     ///< what they suppose, in a sentence
   std::vector<LawTable> laws{};                ///< of the inputs; they are not of the rows
   std::vector<std::string> notes{};            ///< what the user should know of the answers
+  std::vector<std::string> warnings{};         ///< of what was found, a sentence each
 };
 [[nodiscard]] Summary summary_of(const Study& study, const Table& table);
 

@@ -7,6 +7,18 @@
 #include "study/summary/summary_parts.h"
 
 namespace asdic::detail::study {
+namespace {
+
+/// The false alarms beside a target's detections, by the matched filter.
+std::optional<std::size_t> alarms_of(const Study& study, const Table& table,
+                                     const Column& detected) {
+  const std::string head = "detected";
+  if (!study.measure.detection || !detected.name.starts_with(head)) return std::nullopt;
+  const std::size_t column = column_of(table, "false_alarm" + detected.name.substr(head.size()));
+  return column < table.columns.size() ? std::optional(column) : std::nullopt;
+}
+
+}  // namespace
 
 std::vector<SummaryTable> tables_by(const Study& study, const std::vector<SummaryAxis>& asked,
                                     const Table& table) {
@@ -38,6 +50,14 @@ std::vector<SummaryTable> tables_by(const Study& study, const std::vector<Summar
     add_column(made, probability, name, column.meaning + ": share of the realisations");
     add_column(made, probability, name + "_low", "confidence interval");
     add_column(made, probability, name + "_high", "confidence interval");
+    const std::optional<std::size_t> alarms = alarms_of(study, table, column);
+    if (alarms) {
+      add_column(made, probability, "pfa_count", "realisations whose false alarms are known");
+      add_column(made, probability, "pfa", "false-alarm rate that was found");
+      add_column(made, probability, "pfa_low", "confidence interval (Clopper & Pearson)");
+      add_column(made, probability, "pfa_high", "confidence interval (Clopper & Pearson)");
+      add_column(made, probability, "pfa_set", "false-alarm probability that is set");
+    }
     for (std::size_t cell = 0; cell < cells.size(); ++cell) {
       double hits = 0.0;
       ClusteredMean share(clusters);
@@ -49,6 +69,16 @@ std::vector<SummaryTable> tables_by(const Study& study, const std::vector<Summar
       cells.start_row(made, cell, share.count());
       const Interval interval = share.proportion(plan.interval, plan.confidence);
       put(made, {hits, hits / share.count(), interval.low, interval.high});
+      if (!alarms) continue;
+      double known = 0.0, rang = 0.0;
+      for (const std::size_t row : cells.rows(cell))
+        if (counts(table, row, *alarms)) {
+          known += 1.0;
+          rang += table.values[*alarms][row];
+        }
+      const Interval found = clopper_pearson(rang, known, plan.confidence);
+      put(made,
+          {known, rang / known, found.low, found.high, study.measure.false_alarm_probability()});
     }
     all.push_back(std::move(made));
   }

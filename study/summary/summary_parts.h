@@ -1,4 +1,5 @@
 #pragma once
+#include <limits>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -38,6 +39,13 @@ void check_summary_names(const Study& study);
                                                   const Table& table);
 /// Receiver operating characteristic of each target's matched filter, and the area under it.
 [[nodiscard]] std::vector<SummaryTable> roc_tables(const SummaryPlan& plan, const Table& table);
+/// Of the cells without an echo: rates by time, at every power of ten by counting or by a tail that
+/// is fitted, and the operating characteristic that they reach to.
+[[nodiscard]] std::vector<SummaryTable> cell_tables(const Study& study, const Table& table);
+/// Where the false-alarm rates of these tables cannot be the one that is set, within a factor of
+/// 1.3: a sentence each.
+[[nodiscard]] std::vector<std::string> rate_warnings(const Study& study,
+                                                     const std::vector<SummaryTable>& tables);
 /// The first question's estimate after ever more rows.
 [[nodiscard]] std::vector<SummaryTable> convergence_table(const Study& study, const Table& table);
 /// How much every measure depends on every input.

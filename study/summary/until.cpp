@@ -235,6 +235,7 @@ void OrderedEstimate::add(Row row) {
   if (row.index < next_ || enough_) return;
   if (row.index > next_) {
     row.pressure = {};
+    row.cells = {};
     waiting_.emplace(row.index, std::move(row));
     return;
   }

@@ -14,8 +14,7 @@ ListeningReceiver receiver_of(const MeasurePlan& plan) {
     return receiver;
   }
   receiver.phone = plan.matched_filter.phone;
-  const bool known = plan.matched_filter.background == MatchedFilterPlan::Background::noise;
-  receiver.cells = known ? infinity : 2.0 * plan.matched_filter.reference_cells;
+  receiver.cells = plan.matched_filter.estimated_from();
   return receiver;
 }
 

@@ -11,8 +11,8 @@ void MatchedFilterAnswer::of_target(const MeasuredPing& ping, std::size_t target
   FilterAnswer answer;
   if (ping)
     answer = filter_answer(*ping.simulator, *ping.record, plan.matched_filter, plan.array,
-                           static_cast<int>(target),
-                           plan.detection ? plan.detection->false_alarm_probability : 1e-4);
+                           static_cast<int>(target), plan.false_alarm_probability(),
+                           ping.expected.empty() ? ExpectedAnswer{} : ping.expected[target]);
   if (plan.detection && plan.detection->by == DetectionPlan::By::matched_filter) {
     const auto over = [](double statistic, double threshold) {
       if (std::isnan(statistic)) return no_value;  // not known, which is not the same as missed

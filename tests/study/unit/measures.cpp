@@ -151,7 +151,9 @@ TEST_F(Measures, BothBackgroundsKeepTheFalseAlarmProbability) {
 // The echo comes at 4 s and lasts 0.1 s; a cell is 0.053 s. 0.2 s on either side hold no free cell
 // behind the guard, and a record that ends before it nothing at all: that is not a miss.
 TEST_F(Measures, WhatCannotBeComparedIsNotKnown) {
-  const std::string tables = "[measure]\ndetection = true\nsnr_matched = true\n";
+  const std::string tables =
+      "[measure]\ndetection = true\nsnr_matched = true\n"
+      "matched_filter = { background = \"around\" }\n";
   for (const auto& [start, duration] : {std::pair{"3.8", "0.5"}, {"0.0", "3.9"}}) {
     const Study study = read(tables, {std::string("pings.recording_start=") + start,
                                       std::string("pings.recording_duration=") + duration});
@@ -170,11 +172,12 @@ TEST_F(Measures, WhatCannotBeComparedIsNotKnown) {
 
 // 24 free cells of 1/100 Hz around a pulse of 1 s, a hundred cells long.
 TEST_F(Measures, AWidePulseFindsItsFreeCellsFurtherOut) {
-  const Study study =
-      read("[measure]\ndetection = true\nsnr_matched = true\n",
-           {"pulse={kind=\"lfm\", start_frequency=950.0, end_frequency=1050.0, duration=1.0, "
-            "window=\"hann\"}",
-            "transmitter.source_level_db=220"});
+  const Study study = read(
+      "[measure]\ndetection = true\nsnr_matched = true\n"
+      "matched_filter = { background = \"around\" }\n",
+      {"pulse={kind=\"lfm\", start_frequency=950.0, end_frequency=1050.0, duration=1.0, "
+       "window=\"hann\"}",
+       "transmitter.source_level_db=220"});
   const Row row = Realiser(study).realise(0);
   EXPECT_EQ(value(study, row, "detected"), 1.0);
   EXPECT_FALSE(std::isnan(value(study, row, "snr_absent_db")));
