@@ -3,6 +3,7 @@
 #include <oneapi/tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -11,6 +12,7 @@
 #include "core/memory_budget.h"
 #include "processing/across_beams.h"
 #include "processing/echo_pointing.h"
+#include "processing/factor_estimate.h"
 #include "processing/peak_cluster.h"
 #include "processing/threshold_probes.h"
 #include "raytrace/parallel/parallel.h"
@@ -19,14 +21,14 @@
 namespace asdic::detail {
 namespace {
 
-/// Offset of a parabola's top through three logarithms of power, within half a step.
+/// Offset of a parabola's top through three values, within half a step.
 double top_of(double before, double here, double after) {
   const double bend = before - 2.0 * here + after;
   return bend < 0.0 ? std::clamp(0.5 * (before - after) / bend, -0.5, 0.5) : 0.0;
 }
 
-double log_power(float power) {
-  return std::log(static_cast<double>(power) + std::numeric_limits<double>::min());
+double step_of(const MatchedFilterBank& bank) {
+  return bank.filters() > 1 ? bank.doppler(1) - bank.doppler(0) : 0.0;
 }
 
 std::vector<Vec3> about(const Vec3& middle, std::span<const Vec3> phones) {
@@ -63,6 +65,13 @@ double guard_of(const Replica& replica, const NormaliserSettings& settings) {
                          (settings.guard_cells + settings.reference_cells) * cell);
 }
 
+/// What an echo of power 1 adds to its own background: its side lobes there.
+double own_background(const Replica& replica, const NormaliserSettings& settings, double guard) {
+  const double cell = 1.0 / replica.noise_bandwidth();
+  const double from = std::max(settings.guard_cells * cell, guard);
+  return mean_answer(replica, from, from + settings.reference_cells * cell);
+}
+
 /// Beams are steered about the middle of the phones, so that an echo comes at one time in all of
 /// them, also on a line that is towed far behind the point that delays refer to.
 class Search {
@@ -84,6 +93,7 @@ class Search {
         bank_(replica, dopplers, baseband, settings.sub_bands),
         cell_(bank_.sample_rate() / replica.noise_bandwidth() * settings.sub_bands),
         guard_(guard_of(replica, settings.normaliser)),
+        own_background_(own_background(replica, settings.normaliser, guard_)),
         estimator_(settings.normaliser, cell_, bank_.sample_rate() * guard_, settings.sub_bands),
         channels_(channel_spectra(baseband)),
         across_(shape_, phones_, weights_, grid_.looks, wavelength_,
@@ -92,7 +102,17 @@ class Search {
                   dopplers.front(), settings.sub_bands),
         doppler_cell_(doppler_cell(replica, settings.sub_bands)),
         ridge_(-doppler_answer(replica, 1.0 + 0.25 * doppler_cell_, settings.sub_bands).delay /
-               (0.25 * doppler_cell_)) {}
+               (0.25 * doppler_cell_)) {
+    if (bank_.filters() < 3) return;
+    // So far apart that a pulse which loses by |offset| alone is not told by its top's jitter.
+    constexpr double wide = 0.27;
+    const double step = step_of(bank_);
+    aside_ = static_cast<std::size_t>(std::max(1.0, std::round(wide * 2.0 * doppler_cell_ / step)));
+    close_ = FactorEstimate(replica, step, doppler_cell_, settings.sub_bands);
+    if (aside_ > 1)
+      wide_ = FactorEstimate(replica, static_cast<double>(aside_) * step, doppler_cell_,
+                             settings.sub_bands);
+  }
 
   DetectorResult run(std::span<const Probe> probes, const std::function<bool()>& proceed) {
     const BeamSpectra beams =
@@ -279,44 +299,113 @@ class Search {
     std::erase_if(peaks, [](const Peak& peak) { return !(peak.power > peak.threshold); });
   }
 
-  /// Between the samples, filters and beams.
+  /// A filter's largest power near a sample, between the samples.
+  struct Top {
+    double power = 0.0, sample = 0.0;
+  };
+  Top top_near(std::span<const float> power, double sample) const {
+    const auto n = static_cast<std::ptrdiff_t>(power.size());
+    const auto middle = static_cast<std::ptrdiff_t>(std::lround(sample));
+    const auto reach = static_cast<std::ptrdiff_t>(std::ceil(0.5 * cell_));
+    const auto within = [&](std::ptrdiff_t i) { return std::clamp<std::ptrdiff_t>(i, 0, n - 1); };
+    const auto i = std::max_element(power.begin() + within(middle - reach),
+                                    power.begin() + within(middle + reach) + 1) -
+                   power.begin();
+    constexpr int parts = 8;  // of a sample
+    Top top{.power = static_cast<double>(power[static_cast<std::size_t>(i)]),
+            .sample = static_cast<double>(i)};
+    std::array<double, 2 * parts + 1> fine{};
+    for (int k = -parts; k <= parts; ++k)
+      fine[static_cast<std::size_t>(k + parts)] =
+          interpolated(power, static_cast<double>(i) + static_cast<double>(k) / parts);
+    const auto best = std::max_element(fine.begin() + 1, fine.end() - 1) - fine.begin();
+    const auto at = [&](std::ptrdiff_t k) { return fine[static_cast<std::size_t>(k)]; };
+    if (!(at(best) >= top.power)) return top;
+    const double before = at(best - 1), after = at(best + 1);
+    const double offset = top_of(before, at(best), after);
+    top.power = at(best) + 0.25 * (after - before) * offset;
+    top.sample += (static_cast<double>(best - parts) + offset) / parts;
+    return top;
+  }
+
+  /// The filter's power is sampled at twice the pulse's band, its own: a windowed sinc.
+  static double interpolated(std::span<const float> power, double sample) {
+    constexpr std::ptrdiff_t taps = 12;  // to either side
+    const auto n = static_cast<std::ptrdiff_t>(power.size());
+    const auto from = static_cast<std::ptrdiff_t>(std::floor(sample)) - taps + 1;
+    double sum = 0.0;
+    for (std::ptrdiff_t k = std::max<std::ptrdiff_t>(from, 0);
+         k < std::min<std::ptrdiff_t>(from + 2 * taps, n); ++k) {
+      const double x = sample - static_cast<double>(k), c = std::cos(0.5 * pi * x / taps);
+      const double sinc = x == 0.0 ? 1.0 : std::sin(pi * x) / (pi * x);
+      sum += static_cast<double>(power[static_cast<std::size_t>(k)]) * sinc * c * c;
+    }
+    return sum;
+  }
+
+  /// Between the samples, filters and beams. Filters are compared where each answers most: a
+  /// sweep's echo comes at another time in each of them, along its ridge.
   Detection refine(const Peak& peak, const BeamSpectra& beams) const {
     FftBuffer<std::complex<float>> work(bank_.work());
     std::vector<float> out(bank_.samples());
-    const std::size_t i = peak.sample, last = bank_.filters() - 1;
-    const auto filtered = [&](std::size_t f) {
+    const std::size_t last = bank_.filters() - 1;
+    const double step = step_of(bank_), later = ridge_ * step * bank_.sample_rate();
+    const auto answer = [&](std::size_t f, double sample) {
       bank_.power(f, beams.beam(peak.beam), work.data(), out.data());
-      return out[i];
+      return top_near(out, sample);
     };
-    double filter_offset = 0.0;
-    if (peak.filter > 0 && peak.filter < last) {
-      const double before = log_power(filtered(peak.filter - 1));
-      const double after = log_power(filtered(peak.filter + 1));
-      filter_offset = top_of(before, log_power(filtered(peak.filter)), after);
-    } else {
-      static_cast<void>(filtered(peak.filter));
+    std::size_t middle = peak.filter;
+    Top here = answer(middle, static_cast<double>(peak.sample));
+    double offset = 0.0;  // of the factor from the middle's
+    const FactorEstimate* estimate = nullptr;
+    const auto estimated = [&] {
+      const std::size_t room = std::min(middle, last - middle);
+      if (room == 0) return;
+      const std::size_t aside = room < aside_ ? 1 : aside_;
+      estimate = aside == 1 ? &close_ : &wide_;
+      const auto log_snr = [&](std::size_t f) {
+        const double steps = static_cast<double>(f) - static_cast<double>(middle);
+        const double power = answer(f, here.sample + later * steps).power;
+        return std::log((power + std::numeric_limits<double>::min()) / bank_.doppler(f));
+      };
+      offset = estimate->offset(log_snr(middle + aside) - log_snr(middle - aside));
+    };
+    estimated();
+    // Of filters close together noise makes one beside the loudest: asked again about that which
+    // lies between them. No further, or what is left beside a loud echo would be drawn to it.
+    const auto moved =
+        std::clamp<std::ptrdiff_t>(std::lround(offset / std::max(step, 1e-12)),
+                                   -std::ptrdiff_t(aside_) + 1, std::ptrdiff_t(aside_) - 1);
+    const auto next = static_cast<std::ptrdiff_t>(middle) + moved;
+    if (moved != 0 && next > 0 && next < static_cast<std::ptrdiff_t>(last)) {
+      middle = static_cast<std::size_t>(next);
+      here = answer(middle, here.sample + later * static_cast<double>(moved));
+      estimated();
     }
-    double sample_offset = 0.0;
-    if (i > 0 && i + 1 < bank_.samples())
-      sample_offset = top_of(log_power(out[i - 1]), log_power(out[i]), log_power(out[i + 1]));
+    offset = std::clamp(offset, -0.6 * step * double(aside_), 0.6 * step * double(aside_));
     Detection d;
-    d.time = bank_.time(static_cast<double>(i) + sample_offset);
-    const double step = last > 0 ? bank_.doppler(1) - bank_.doppler(0) : 0.0;
-    d.doppler = bank_.doppler(peak.filter) + filter_offset * step;
+    d.doppler = bank_.doppler(middle) + offset;
+    d.time = bank_.time(here.sample) + ridge_ * offset;
     pointing_.point(d, grid_.looks[peak.beam]);
     const double power = std::max(static_cast<double>(peak.power), pointing_.power_at(d));
     d.snr_db = db_from_power(power / static_cast<double>(peak.background));
     d.excess_db = db_from_power(power / static_cast<double>(peak.threshold));
     d.level_db = level_of(power);
-    d.doppler_sigma = sigma_of(2.0 * doppler_cell_, power / static_cast<double>(peak.background));
-    const double middle = 0.5 * (bank_.doppler(0) + bank_.doppler(last)),
-                 half_span = bank_.doppler(last) - middle;
+    // Over the noise alone, without the echo's own side lobes in the background.
+    const double noise = static_cast<double>(peak.background) - own_background_ * power;
+    if (estimate != nullptr)
+      d.doppler_sigma =
+          estimate->sigma(power / std::max(noise, 0.4 * static_cast<double>(peak.background)));
+    else  // one filter, or the bank's end: any factor that it answers to
+      d.doppler_sigma = doppler_cell_ / std::sqrt(3.0);
+    const double centre = 0.5 * (bank_.doppler(0) + bank_.doppler(last)),
+                 half_span = bank_.doppler(last) - centre;
     if (half_span > 0.0 && half_span <= doppler_cell_) {
       const double known_before = half_span / std::sqrt(3.0);  // evenly likely all over the bank
       d.doppler_sigma = std::min(d.doppler_sigma, known_before);
       if (peak.filter == 0 || peak.filter == last) {  // no maximum: along the ridge to the middle
-        d.time -= ridge_ * (d.doppler - middle);
-        d.doppler = middle;
+        d.time -= ridge_ * (d.doppler - centre);
+        d.doppler = centre;
         d.doppler_sigma = known_before;
       }
     }
@@ -336,11 +425,14 @@ class Search {
   MatchedFilterBank bank_;
   double cell_;   // samples of its output
   double guard_;  // what a pulse of a long answer leaves out [s]; 0 of others
+  double own_background_;
   BackgroundEstimator estimator_;
   BeamSpectra channels_;
   AcrossBeams across_;
   EchoPointing pointing_;
   double doppler_cell_, ridge_;  // delay_per_doppler
+  std::size_t aside_ = 1;        // filters compared lie so many to either side
+  FactorEstimate close_, wide_;  // of filters one, and so many, to either side
   std::vector<PlacedProbe> probes_;
 };
 
@@ -348,6 +440,12 @@ class Search {
 
 double sigma_of(double cell, double snr) {
   return cell * std::max(0.1, 0.5 / std::sqrt(2.0 * snr));
+}
+
+double trusted_sigma(const Detection& detection, const DetectorResult& of) {
+  const double known = 0.5 * (of.dopplers.back() - of.dopplers.front()) / std::sqrt(3.0);
+  const double floor = 0.2 * of.doppler_cell;
+  return std::max(detection.doppler_sigma, known > 0.0 ? std::min(floor, known) : floor);
 }
 
 DetectorResult detect(const Baseband& baseband, std::span<const Vec3> phones, double sound_speed,

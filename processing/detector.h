@@ -69,6 +69,11 @@ struct DetectorResult {
   std::size_t peaks = 0;              ///< local maxima over the threshold, before clustering
 };
 
+/// What a detection's Doppler factor is trusted to [1]: its noise, doppler_sigma, but no better
+/// than a tenth of the span in which a filter answers within 3 dB, nor worse than the bank tells.
+/// Paths of one echo that lie within a cell move it by as much, however loud.
+[[nodiscard]] double trusted_sigma(const Detection& detection, const DetectorResult& of);
+
 /// Matched filters in beams, compared with their surroundings: what stands out, one detection a
 /// thing.
 ///

@@ -11,7 +11,7 @@ namespace asdic::detail {
 /// Uniform over all draws of z_j and z, whatever a, b and t_j: it is the predictive distribution
 /// under the right Haar measure da db of a group that the means are moved by (Hora & Buehler, Ann.
 /// Math. Stat. 37, 643, 1966). Of b = 0 alone it would be (1 + x/Σz_j)^(−m), Finn & Johnson's.
-/// docs/theory/studies.md, eq. (11) \param powers  z_j, above 0   \param times  t_j, two of them
+/// docs/theory/studies.md, eq. (16) \param powers  z_j, above 0   \param times  t_j, two of them
 /// different
 [[nodiscard]] double log_exceedance_over_trend(std::span<const double> powers,
                                                std::span<const double> times, double x);

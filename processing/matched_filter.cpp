@@ -166,16 +166,24 @@ class NailFinder {
 
 double reach_of_answer(const Replica& replica, double first, double last) {
   constexpr double heard = 4e-3, silent = 1e-3;
+  if (!(mean_answer(replica, first, last) > heard)) return 0.0;
   const AnswerOverDelay answer = answer_over_delay(replica);
-  double sum = 0.0, count = 0.0, reach = 0.0;
+  double reach = 0.0;
+  for (std::size_t i = 1; i < answer.power.size(); ++i)
+    if (answer.power[i] > silent) reach = static_cast<double>(i) * answer.step;
+  return reach;
+}
+
+double mean_answer(const Replica& replica, double first, double last) {
+  const AnswerOverDelay answer = answer_over_delay(replica);
+  double sum = 0.0, count = 0.0;
   for (std::size_t i = 1; i < answer.power.size(); ++i) {
     const double delay = static_cast<double>(i) * answer.step;
-    if (answer.power[i] > silent) reach = delay;
     if (delay < first || delay > last) continue;
     sum += answer.power[i];
     count += 1.0;
   }
-  return sum > heard * count ? reach : 0.0;
+  return count > 0.0 ? sum / count : 0.0;
 }
 
 Nail nail_in_delay(const Replica& replica) {

@@ -33,6 +33,10 @@ struct DopplerAnswer {
 /// Costas pulses reach as far as the pulse is long. \param first, last  of the background [s]
 [[nodiscard]] double reach_of_answer(const Replica& replica, double first, double last);
 
+/// Mean of the filter's own answer between two delays, 1 at the echo; what of the pulse's length
+/// lies between. \param first, last [s]
+[[nodiscard]] double mean_answer(const Replica& replica, double first, double last);
+
 /// The loudest answer beside the echo's own, past where it has fallen below a quarter of it.
 struct Nail {
   double offset = 0.0;  ///< of the delay [s], or of the Doppler factor

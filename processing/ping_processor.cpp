@@ -311,7 +311,7 @@ std::vector<Contact> PingProcessor::contacts(const ProcessedArray& processed, do
     c.range = place.range;
     c.range_rate = place.range_rate;
     c.range_sigma = sigma_of(processed.result.time_cell, snr) * place.range_slope;
-    c.range_rate_sigma = d.doppler_sigma * place.rate_slope;
+    c.range_rate_sigma = trusted_sigma(d, processed.result) * place.rate_slope;
     // Along the ridge the delay is late by D for an error of η, the range rate low by rate_slope.
     c.range_per_rate = -processed.result.delay_per_doppler * place.range_slope / place.rate_slope;
     if (std::isnan(place.bearing)) {  // no bearing: a track along one line, seen from the platform

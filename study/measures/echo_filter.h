@@ -34,7 +34,7 @@ struct FreeCell {
 /// n phones' white noise, the mean of |y|² in the nearest cells that are free of echoes, the same
 /// along a trend of their level, or the mean over draws. A target that no path reaches is listened
 /// for when the sound would come along a straight line. Source: docs/theory/studies.md, eq. (1)–(3)
-/// and (11) \param record  the whole, or the part of it that samples_for_filter() names   \param
+/// and (16) \param record  the whole, or the part of it that samples_for_filter() names   \param
 /// false_alarm_probability  of one cell, for the thresholds   \param expected  of this target
 [[nodiscard]] FilterAnswer filter_answer(const PingSimulator& simulator, const PingRecord& record,
                                          const MatchedFilterPlan& plan, int array, int target,
