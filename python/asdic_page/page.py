@@ -101,15 +101,8 @@ def place(file, wanted=None) -> Path:
     return Path(wanted) / name.name if os.path.isdir(wanted) else Path(wanted)
 
 
-def write(data: PingFile, path, ping: int | None = None, array: str | None = None,
-          force: bool = False) -> Path:
-    """Writes the page, whole or not at all, never over what asdic did not write.
-
-    \\throws InputError; OSError with the path when it cannot be written
-    """
-    path = Path(path)
-    output.check(path, force or is_ours(path))
-    made = text(data, ping, array)
+def save(made: str, path: Path) -> None:
+    """Writes a page, whole or not at all. \\throws OSError with the path when it cannot be written"""
     part = None
     try:
         part, descriptor = output.new_part(path)
@@ -125,6 +118,17 @@ def write(data: PingFile, path, ping: int | None = None, array: str | None = Non
     finally:
         if part is not None:
             part.unlink(missing_ok=True)
+
+
+def write(data: PingFile, path, ping: int | None = None, array: str | None = None,
+          force: bool = False) -> Path:
+    """Writes the page, whole or not at all, never over what asdic did not write.
+
+    \\throws InputError; OSError with the path when it cannot be written
+    """
+    path = Path(path)
+    output.check(path, force or is_ours(path))
+    save(text(data, ping, array), path)
     return path
 
 

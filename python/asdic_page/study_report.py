@@ -8,7 +8,6 @@ import base64
 import html
 import io
 import json
-import os
 import tomllib
 from pathlib import Path
 
@@ -18,7 +17,7 @@ import numpy as np
 from asdic_pictures import output, study_comparison, study_data, study_pictures, style
 from asdic_pictures.study_data import _text, _words, spoken
 
-from .page import MARK, is_ours
+from .page import MARK, is_ours, save
 
 KINDS = (study_data.KIND, study_comparison.KIND)
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
@@ -258,16 +257,5 @@ def write(file, path, kind: str, force: bool = False) -> Path:
     with h5py.File(file, "r") as f:
         version = _text(f.attrs.get("program_version", ""))
     made = PAGE.format(mark=MARK, version=" " + escape(version), policy=POLICY, title=escape(title), css=CSS, body=body)
-    part = None
-    try:
-        part, descriptor = output.new_part(path)
-        with open(descriptor, "w", encoding="utf-8") as out:
-            out.write(made)
-            out.flush()
-            os.fsync(out.fileno())
-        os.replace(part, path)
-        part = None
-    finally:
-        if part is not None:
-            os.unlink(part)
+    save(made, path)
     return path
