@@ -355,7 +355,8 @@ std::vector<std::string> rate_warnings(const Study& study,
                   " more bins of the summary's tables are off by more than a factor of 1.3");
   }
   using Background = MatchedFilterPlan::Background;
-  if (!all.empty() && study.measure.matched_filter.background != Background::expected)
+  const Background background = study.measure.matched_filter.background;
+  if (!all.empty() && background != Background::expected && background != Background::summed)
     all.push_back(
         "false-alarm rate: where the level bends or the noise is not the background, "
         "measure.matched_filter.background = \"expected\" compares with what the simulation "
