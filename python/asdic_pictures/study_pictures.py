@@ -10,7 +10,7 @@ from .study_data import Column, Study, SummaryTable, spoken
 
 MOST_PANELS = 12
 MOST_BESIDE = 6  # inputs of two maps side by side
-YES_OR_NO = ("detected", "false_alarm")
+YES_OR_NO = ("detected", "false_alarm", "rare_event")
 CELL_WORDS = {"pfa": "false-alarm rate", "k_shape": "shape of the K distribution (high: Rayleigh)"}
 CELLS = "roc_cells"  # the table of all cells without an echo
 RAYLEIGH = 1e4  # a shape of the K distribution that nobody tells from it
@@ -137,7 +137,7 @@ def title(table: SummaryTable, names: list) -> str:
     every = len(varying(table))
     some = f", {len(names)} of {every} measures" if len(names) < every else ""
     alone = [n for n in names if not beside(table, n)] or names
-    what = spoken(alone[0]) if alone[0].startswith(("pd", "pfa")) else "means"
+    what = spoken(alone[0]) if alone[0].startswith(("pd", "pfa", "p_event")) else "means"
     what += ", and the false-alarm rate," if len(alone) < len(names) else ""
     if table.name.startswith("cells"):
         return f"Cells without an echo: {' and '.join(CELL_WORDS.get(n, n) for n in names)} against time"
@@ -166,7 +166,7 @@ def draw_by(study: Study) -> dict:
             orient(a.yaxis, table[name])
             a.set_ylabel(CELL_WORDS.get(name, table[name].label())
                          if table.name.startswith("cells") else table[name].label())
-            if beside(table, name) or table.name.startswith("cells"):
+            if beside(table, name) or table.name.startswith(("cells", "p_event")):
                 rate_axis(a, table, name)
             elif table[name].values.size and not table.name.startswith("means"):
                 limit = top(table[f"{name}_high"].values)
@@ -374,7 +374,7 @@ def draw_histograms(study: Study) -> dict:
     lines = ", their laws (black)" if any(c.name in study.laws for c in columns) else ""
     fig, axes = panels(study, f"Inputs as they were drawn (grey){lines} and measures (blue)" + some,
                        len(columns))
-    heading(axes[0], study)
+    heading(axes[0], study, "rows as they were drawn, not weighed" if study.weights is not None else "")
     for column, a in zip(columns, axes):
         values = column.values[np.isfinite(column.values)] * column.scale()
         law = study.laws.get(column.name)

@@ -279,6 +279,12 @@ Comparison compare(const std::vector<Compared>& studies) {
                       .expected = "another design to compare by: pairs are taken for independent, "
                                   "and rows of a block are not"});
   for (const Compared& other : studies)
+    if (is_weighted(*other.study))
+      throw InputError(
+          {.where = other.study->path.string(),
+           .got = "inputs that are drawn from a proposal",
+           .expected = "those of the laws alone: pairs of rows have no common weight"});
+  for (const Compared& other : studies)
     if (other.study->design_options.replicates != first.design_options.replicates)
       throw InputError({.where = other.study->path.string() + ": study.replicates",
                         .got = std::to_string(other.study->design_options.replicates),
