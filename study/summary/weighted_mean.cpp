@@ -10,6 +10,8 @@
 namespace asdic::detail::study {
 namespace {
 
+constexpr double enough_rows = 10.0;  // of an event, as many of one weight, to bound it from above
+
 /// Σ of the series of P(a, x), x < a + 1 (Abramowitz & Stegun 6.5.29).
 double gamma_series(double a, double x) {
   double term = 1.0 / a, sum = term;
@@ -191,11 +193,10 @@ double WeightedMean::probability() const noexcept {
 Interval WeightedMean::probability_interval(double confidence) const {
   if (!(all_.known > 0.0)) return {0.0, 1.0};
   const Event event = rarer();
-  Interval interval{0.0, 1.0};
-  if (!(event.rows > 0.0)) {
-    // None of as many independent rows.
-    interval.high = 1.0 - std::pow(0.5 * (1.0 - confidence), 1.0 / std::max(1.0, effective()));
-  } else {
+  // None of as many independent rows: what is said of an event that is not reached.
+  const double none = 1.0 - std::pow(0.5 * (1.0 - confidence), 1.0 / std::max(1.0, effective()));
+  Interval interval{0.0, none};
+  if (event.rows > 0.0) {
     double variance = variance_of(event);
     if (clusters_.kind == Clusters::Kind::replicates) {
       const double widened =
@@ -207,6 +208,9 @@ Interval WeightedMean::probability_interval(double confidence) const {
     const double largest = event.largest / event.divisor;
     variance = std::max(variance, 1e-6 * event.estimate * event.estimate);
     interval = gamma_interval(event.estimate, variance, largest, confidence);
+    // Of a few rows nobody knows how large others' weights may be.
+    if (event.sum * event.sum < enough_rows * event.squares)
+      interval.high = std::max(interval.high, none);
   }
   interval.high = std::min(1.0, interval.high);
   return event.is_one ? interval : Interval{1.0 - interval.high, 1.0 - interval.low};

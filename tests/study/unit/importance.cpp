@@ -101,6 +101,14 @@ TEST(GammaInterval, IsGarwoodsOfCounts) {
   EXPECT_NEAR(gamma_quantile(1.0001e4, 0.975) / gamma_quantile(0.9999e4, 0.975), 1.0002, 1e-5);
 }
 
+// One hit of a tiny weight among a hundred rows: others of larger weight may be unseen.
+TEST(GammaInterval, AFewRowsBoundNothing) {
+  WeightedMean mean;
+  for (std::uint64_t i = 0; i < 100; ++i) mean.add(i, i == 7 ? 1.0 : 0.0, i == 7 ? 1e-18 : 1.0);
+  EXPECT_NEAR(mean.probability(), 1e-18 / 99.0, 1e-25);
+  EXPECT_NEAR(mean.probability_interval(0.95).high, 1.0 - std::pow(0.025, 1.0 / 99.0), 1e-9);
+}
+
 // What is drawn has the law that it should, and its density is that law's over the input's.
 TEST(Proposals, DrawAndWeighWhatTheySay) {
   const CutLaw nominal(Normal{2.0, 1.0}), other(Normal{4.0, 0.5});
