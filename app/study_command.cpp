@@ -9,6 +9,7 @@
 #include "app/console.h"
 #include "app/interrupt.h"
 #include "app/pictures.h"
+#include "app/study_adapt.h"
 #include "app/study_comparison.h"
 #include "app/study_options.h"
 #include "app/study_progress.h"
@@ -110,6 +111,11 @@ void add_study_command(Program& program) {
                         "gone; default: 120 s")
             .type_name("SECONDS")
             .check(above_zero());
+        command
+            .add_option("--adapt", options->adapt,
+                        "make no study: find, level by level, from where inputs reach the event of "
+                        "[rare], and write the study with it, to be made by the same command")
+            .type_name("FILE.toml");
         command.add_flag("--assemble", options->assemble,
                          "make no realisations: write a file of those that are there");
         command.footer(
@@ -117,6 +123,7 @@ void add_study_command(Program& program) {
             "was.\n"
             "Example:  asdic study scenarios/studies/detection_range.toml -o detection_range.h5");
         command.runs([options] {
+          if (!options->adapt.empty()) return adapt_study(*options);
           return options->compare ? compare_studies(*options, study_run) : study_run(*options);
         });
       });

@@ -122,8 +122,10 @@ int compare_studies(const StudyOptions& options, const RunStudy& run) {
   rules.inputs.insert(rules.inputs.end(), files.begin(), files.end());
   check_output(target, rules);
   std::vector<study::Study> studies;  // all are read before the first is made
-  for (const std::string& path : options.paths)
+  for (const std::string& path : options.paths) {
     studies.push_back(study::read_study(path, options.overrides));
+    study::check_comparable(studies.back());
+  }
   for (const std::string& path : options.paths) {
     StudyOptions one = options;
     one.paths = {path};

@@ -13,7 +13,7 @@ namespace asdic::detail::app {
 
 struct StudyOptions {
   std::vector<std::string> paths;  ///< one; of --compare several
-  std::string output, range, shard;
+  std::string output, range, shard, adapt;
   std::vector<std::string> overrides;
   std::optional<int> threads;
   std::vector<std::string> until;

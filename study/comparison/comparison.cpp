@@ -271,6 +271,13 @@ std::vector<std::string> names_of(const std::vector<std::string>& paths) {
   return names;
 }
 
+void check_comparable(const Study& study) {
+  if (is_weighted(study))
+    throw InputError({.where = study.path.string(),
+                      .got = "inputs that are drawn from a proposal",
+                      .expected = "those of the laws alone: pairs of rows have no common weight"});
+}
+
 Comparison compare(const std::vector<Compared>& studies) {
   const Study& first = *studies.front().study;
   if (first.design == Design::saltelli)
@@ -278,6 +285,7 @@ Comparison compare(const std::vector<Compared>& studies) {
                       .got = in_quotes(name(first.design)),
                       .expected = "another design to compare by: pairs are taken for independent, "
                                   "and rows of a block are not"});
+  for (const Compared& other : studies) check_comparable(*other.study);
   for (const Compared& other : studies)
     if (other.study->design_options.replicates != first.design_options.replicates)
       throw InputError({.where = other.study->path.string() + ": study.replicates",

@@ -39,4 +39,7 @@ struct Comparison {
 /// "range_error": the smaller the better.
 [[nodiscard]] bool least_is_best(const Column& measure) noexcept;
 
+/// Before its rows are made: \throws InputError for a study that has weights, since pairs have none
+void check_comparable(const Study& study);
+
 }  // namespace asdic::detail::study

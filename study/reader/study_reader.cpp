@@ -13,6 +13,7 @@
 #include "study/plan/target_keys.h"
 #include "study/reader/correlation_reader.h"
 #include "study/reader/measure_reader.h"
+#include "study/reader/rare_reader.h"
 #include "study/reader/summary_reader.h"
 #include "study/reader/vary_reader.h"
 #include "study/summary/summary_parts.h"
@@ -20,8 +21,8 @@
 namespace asdic::detail::study {
 namespace {
 
-constexpr std::array<std::string_view, 6> study_tables{"study",       "set",     "vary",
-                                                       "correlation", "measure", "summary"};
+constexpr std::array<std::string_view, 7> study_tables{"study",   "set",  "vary",   "correlation",
+                                                       "measure", "rare", "summary"};
 
 bool is_study_table(std::string_view key) {
   return std::find(study_tables.begin(), study_tables.end(), key) != study_tables.end();
@@ -102,8 +103,8 @@ void read_scenario_tree(TomlTable head, const TomlValue& document, Study& study)
       if (!is_study_table(entry.key))
         throw InputError({.where = entry.value.origin + ": " + entry.key,
                           .got = "a key of the scenario beside study.scenario",
-                          .expected = "[study], [set], [vary], [correlation], [measure] and "
-                                      "[summary] alone"});
+                          .expected = "[study], [set], [vary], [correlation], [measure], "
+                                      "[rare] and [summary] alone"});
     study.scenario_text = read_text_file(study.scenario_path);
   } else {
     study.scenario_path = study.path;
@@ -219,6 +220,8 @@ Study read_study(const std::filesystem::path& path, std::span<const std::string>
     study.correlation = read_correlation(own.table("correlation"),
                                          *study.document.find("correlation"), study.variables);
   settle_rows(root.table("study"), study);
+  TomlTable head = root.table("study"), rare = own.table("rare");
+  read_proposals(head, rare, study);
   if (study.realisations == 0) study.realisations = grid_points(study.variables);
   make_room(study.variables, study.scenario_path, study.scenario);
   study.measure = read_measure(own.table("measure"), example_of(study));
@@ -226,6 +229,12 @@ Study read_study(const std::filesystem::path& path, std::span<const std::string>
     study.warnings.push_back(own.table("measure").where("signal_excess") +
                              ": old name of echo_to_background, before any processing; it will "
                              "go. detection_signal_excess counts processing gain and threshold");
+  read_event(rare, columns(study), study);
+  rare.finish();
+  if (study.rare.event && !is_weighted(study))
+    study.warnings.push_back(rare.where("event") +
+                             ": rows are drawn from the inputs' own laws; --adapt finds from where "
+                             "the event is reached with fewer of them");
   study.summary =
       read_summary(own.table("summary"), study.document.find("summary"), columns(study));
   check_summary_names(study);

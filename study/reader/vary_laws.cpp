@@ -216,7 +216,54 @@ TrackLaw read_track(TomlTable& table, const Variable& variable, const Study& stu
   return law;
 }
 
+/// A law with values where the input's own has them.
+LawInstead read_law_instead(TomlTable& entry, TomlTable table, const CutLaw& own) {
+  const std::string name =
+      table.choice("law", {"uniform", "normal", "log_normal", "triangular", "rayleigh", "weibull"});
+  const CutLaw asked = read_number_law(name, table).law;
+  table.finish();
+  const Span ends = own.ends();
+  const CutLaw cut(asked.law(), std::max(asked.low(), ends.low), std::min(asked.high(), ends.high));
+  // Beyond, the probability that is left has no digits.
+  constexpr double rest = 1e-15;
+  const double middle = cut.share() > 0.0 ? own.distribution(cut.quantile(0.5)) : 0.0;
+  if (!(middle > rest && middle < 1.0 - rest))
+    throw entry.fault("proposal",
+                      "a law whose middle lies where the input itself has values, from " +
+                          to_text(own.quantile(rest)) + " to " + to_text(own.quantile(1.0 - rest)));
+  return {.law = own, .instead = cut};
+}
+
+/// { weights = [..] } of the same choices.
+WeightsInstead read_weights_instead(TomlTable table, const ChoiceLaw& own) {
+  if (!table.has("weights"))
+    throw table.fault("weights",
+                      "weights of the input's " + std::to_string(own.values.size()) + " values");
+  WeightsInstead made{.cumulative = own.cumulative,
+                      .instead = read_weights(table, own.values.size())};
+  const auto weight = [](const std::vector<double>& cumulative, std::size_t i) {
+    return cumulative[i] - (i > 0 ? cumulative[i - 1] : 0.0);
+  };
+  for (std::size_t i = 0; i < own.values.size(); ++i)
+    if (weight(made.instead, i) > 0.0 && !(weight(made.cumulative, i) > 0.0))
+      throw table.fault("weights[" + std::to_string(i) + "]",
+                        "0, as the input itself never takes this value");
+  table.finish();
+  return made;
+}
+
 }  // namespace
+
+CoordinateDraw read_proposal(TomlTable& table, const AnyLaw& law) {
+  if (const auto* number = std::get_if<NumberLaw>(&law))
+    return read_law_instead(table, table.table("proposal"), number->law);
+  const auto* choice = std::get_if<ChoiceLaw>(&law);
+  if (choice != nullptr && choice->kind == ChoiceLaw::Kind::weighted)
+    return read_weights_instead(table.table("proposal"), *choice);
+  throw table.fault("proposal",
+                    "none: a continuous law may have one, and a choice by weights; all others are "
+                    "drawn by [[rare.component]]");
+}
 
 AnyLaw read_law(TomlTable& table, const TomlValue& value, Variable& variable, const Study& study,
                 const Others& others, bool in_branch) {

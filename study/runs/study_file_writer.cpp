@@ -38,7 +38,10 @@ void StudyFileWriter::write_table() {
     const std::string path = "table/" + c.name;
     column<double>(path, table.values[i], std::numeric_limits<double>::quiet_NaN());
     describe_column(file_, path, c);
-    file_.set_attribute(path, "role", c.role == Column::Role::input ? "input" : "measure");
+    file_.set_attribute(path, "role",
+                        c.role == Column::Role::input    ? "input"
+                        : c.role == Column::Role::weight ? "weight"
+                                                         : "measure");
     file_.attach_scales(path, {"index"});
   }
   std::string faults;
@@ -215,7 +218,7 @@ std::string joined(const std::vector<std::string>& texts) {
 
 void StudyFileWriter::write_root() {
   const Fingerprint& fingerprint = results_.fingerprint;
-  write_filetype(file_, "asdic study", "1.4");
+  write_filetype(file_, "asdic study", "1.5");
   file_.set_attribute("", "title", fingerprint.title);
   file_.set_attribute("", "identity", fingerprint.identity);
   file_.set_attribute("", "seed", std::to_string(fingerprint.seed));

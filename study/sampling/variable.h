@@ -12,6 +12,7 @@
 #include "io/text/toml_value.h"
 #include "study/expression/expression.h"
 #include "study/sampling/law.h"
+#include "study/sampling/proposal.h"
 
 namespace asdic::detail::study {
 
@@ -134,6 +135,7 @@ struct Variable {
   std::string text = {};                ///< the law, as the study file has it
   std::string digest = {};              ///< of files that its law was read from, for the identity
   std::vector<std::string> notes = {};  ///< what the user should know of them
+  CoordinateDraw proposal = {};         ///< from what its coordinate is drawn instead
 };
 
 /// A whole or real number as such; none for anything else.

@@ -211,6 +211,7 @@ std::vector<LawTable> law_tables(const Study& study) {
         Study other = study;  // the same laws, other draws
         if (!on_grid) other.design = Design::random;
         other.seed = ~study.seed;
+        other.proposal = {};  // the laws, whatever rows are drawn from
         const Sampler sampler(other);
         drawn.resize(sampler.columns().size());
         for (std::uint64_t i = 0; i < draws; ++i) {

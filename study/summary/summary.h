@@ -5,8 +5,8 @@
 
 #include "study/measures/cell_counts.h"
 #include "study/measures/realisation.h"
-#include "study/summary/clustered_mean.h"
 #include "study/summary/law_tables.h"
+#include "study/summary/weighted_mean.h"
 
 namespace asdic::detail::study {
 
@@ -41,6 +41,7 @@ struct Summary {
   std::vector<LawTable> laws{};                ///< of the inputs; they are not of the rows
   std::vector<std::string> notes{};            ///< what the user should know of the answers
   std::vector<std::string> warnings{};         ///< of what was found, a sentence each
+  std::string left_out{};                      ///< which tables are not made, and why
 };
 [[nodiscard]] Summary summary_of(const Study& study, const Table& table);
 
@@ -64,12 +65,12 @@ class RunningEstimate {
 
  private:
   std::string name_, unit_;
-  std::size_t column_ = 0;
+  std::size_t column_ = 0, weight_ = 0;
   bool proportion_ = false;
   ProportionInterval interval_ = ProportionInterval::wilson;
   double level_ = 0.95;
   std::uint64_t left_out_ = 0;
-  ClusteredMean mean_;
+  RowMean mean_;
 };
 
 }  // namespace asdic::detail::study

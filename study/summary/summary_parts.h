@@ -30,6 +30,16 @@ void check_summary_names(const Study& study);
 /// Whether a row counts for a column: valid, and finite there.
 [[nodiscard]] bool counts(const Table& table, std::size_t row, std::size_t column) noexcept;
 
+/// Weights of rows that were drawn from a proposal; empty: they have none.
+[[nodiscard]] std::vector<double> weights_of(const Table& table);
+/// Whether its rows have weights.
+[[nodiscard]] bool is_weighted(const Table& table) noexcept;
+/// How many rows each part of the proposal has, and what they give to the first question.
+[[nodiscard]] std::vector<SummaryTable> drawn_from_table(const Study& study, const Table& table);
+/// What is to be known of a probability that weights estimate: rows of the event that are too few,
+/// or one that has much of it. A sentence each.
+[[nodiscard]] std::vector<std::string> weight_warnings(const Study& study, const Table& table);
+
 /// Count, mean, deviation, interval of the mean, extremes and quantiles of every column.
 [[nodiscard]] SummaryTable statistics_table(const Study& study, const Table& table);
 /// Proportions and means of all measures along one axis or over two: "pd_by_range", …,

@@ -168,13 +168,16 @@ OrderedEstimate::OrderedEstimate(RunningEstimate estimate, std::uint64_t first, 
   };
   for (const UntilTarget& target : until_.targets()) {
     const std::size_t at = place(target.column);
-    means_.push_back({.column = at,
-                      .proportion = at < every.size() && is_proportion(every[at]),
-                      .of = ClusteredMean(clusters_of(study))});
+    means_.push_back(
+        {.column = at,
+         .proportion = at < every.size() && is_proportion(every[at]),
+         .of = RowMean(clusters_of(study), is_weighted(study), WeightedMean::Of::all_rows)});
     if (target.axes.empty() && target.index.empty()) continue;
     takes(target.column);
     for (const SummaryAxis& axis : target.axes) takes(axis.column);
+    if (is_weighted(study)) takes(log_weight_column);
   }
+  weight_ = place(log_weight_column);
   for (const std::size_t column : taken_) rows_.columns.push_back(every[column]);
   rows_.values.resize(taken_.size());
 }
@@ -194,10 +197,8 @@ Known OrderedEstimate::known(const UntilTarget& target, std::size_t mean) const 
         if (column.name == target.column) find_widest(table, shown_name(column), known);
   } else {
     const SummaryPlan& plan = until_.study()->summary;
-    const ClusteredMean& of = means_[mean].of;
-    const Interval interval = means_[mean].proportion
-                                  ? of.proportion(plan.interval, plan.confidence)
-                                  : of.mean_interval(plan.confidence);
+    const RowMean& of = means_[mean].of;
+    const Interval interval = of.interval(means_[mean].proportion, plan.interval, plan.confidence);
     if (of.count() > 1.0) known.half_width = 0.5 * (interval.high - interval.low);
   }
   if (!std::isfinite(known.half_width)) known.half_width = infinity;
@@ -214,9 +215,12 @@ std::vector<Known> OrderedEstimate::known() const {
 void OrderedEstimate::take(const Row& row) {
   if (enough_) return;
   estimate_.add(row);
+  const double weight = weight_ < row.values.size() ? std::exp(row.values[weight_]) : 1.0;
   for (Mean& mean : means_)
     if (row.valid && mean.column < row.values.size() && std::isfinite(row.values[mean.column]))
-      mean.of.add(row.index, row.values[mean.column]);
+      mean.of.add(row.index, row.values[mean.column], weight);
+    else
+      mean.of.leave_out(row.index, weight);
   if (!taken_.empty()) {
     rows_.index.push_back(row.index);
     rows_.valid.push_back(row.valid ? 1 : 0);

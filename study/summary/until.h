@@ -95,9 +95,10 @@ class OrderedEstimate {
   struct Mean {
     std::size_t column = 0;
     bool proportion = false;
-    ClusteredMean of{};
+    RowMean of;
   };
   std::vector<Mean> means_;         // [targets] of their columns
+  std::size_t weight_ = 0;          // column of the weights; as many as there are: none
   std::vector<std::size_t> taken_;  // columns that rows_ holds
   Table rows_;
   std::optional<std::uint64_t> enough_;
