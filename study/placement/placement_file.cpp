@@ -32,6 +32,8 @@ void write_along(Hdf5File& file, const std::string& name, const std::vector<T>& 
   file.attach_scales(name, scales);
 }
 
+/// place_east, place_north, place_latitude, place_longitude; cell_east, cell_north, cell_latitude,
+/// cell_longitude.
 void write_places(Hdf5File& file, const std::string& thing, const std::vector<Vec2>& places,
                   const std::string& whose, const EarthPlaces& earth) {
   std::vector<double> east, north;
@@ -45,7 +47,7 @@ void write_places(Hdf5File& file, const std::string& thing, const std::vector<Ve
   write_on_earth(file, earth, thing + "_", whose, places, shape, {thing});
 }
 
-/// Places and options of a set.
+/// Places and options of a set: sensor_place, sensor_option; other_place, other_option.
 void write_set(Hdf5File& file, const std::string& thing, const Placement& found,
                const SensorSet& set, const std::string& whose) {
   std::vector<std::int32_t> places, options;

@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::string_view north_error = "north_error";
 
-/// Of what components, and what tables and columns are called by them.
+/// Of what components, and what tables and columns are called by them: east_bias, north_bias;
+/// across_bias, away_bias.
 struct Frame {
   std::string table, x, y, title, bearing;
 };
