@@ -31,7 +31,7 @@ double value(const Study& study, const Row& row, const std::string& name) {
 // receiver's interpolated peaks come within 5 % of it. Deviations of n errors scatter by 1/√(2n);
 // five of these, and 8 % for the receiver.
 TEST(Localisation, EllipseIsThatOfCramerAndRao) {
-  const std::uint64_t rows = support::deep() ? 1000 : 300;
+  const std::uint64_t rows = support::deep() ? 1000 : 100;
   const support::TemporaryDirectory folder;
   const Study study = read_study(
       folder.write("study.toml",
