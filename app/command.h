@@ -165,6 +165,7 @@ void add_compare_command(Program& program);
 void add_field_command(Program& program);
 void add_explain_command(Program& program);
 void add_area_command(Program& program);
+void add_place_command(Program& program);
 void add_ocean_command(Program& program);
 void add_bellhop_command(Program& program);
 void add_convert_command(Program& program);

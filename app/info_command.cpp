@@ -9,6 +9,7 @@
 #include "app/command.h"
 #include "app/console.h"
 #include "app/ping_report.h"
+#include "app/place_info.h"
 #include "app/result_info.h"
 #include "app/study_comparison.h"
 #include "app/study_info.h"
@@ -60,8 +61,8 @@ void check_kind_of_file(const std::string& path) {
   throw InputError({.where = path,
                     .got = "a file that is not HDF5",
                     .expected =
-                        "HDF5 of asdic ping, process, study, merge, area, field, arrivals or "
-                        "rays, or .shd, .arr, .ray, .wav (of a scenario asdic validate "
+                        "HDF5 of asdic ping, process, study, merge, area, place, field, arrivals "
+                        "or rays, or .shd, .arr, .ray, .wav (of a scenario asdic validate "
                         "tells)"});
 }
 
@@ -132,6 +133,7 @@ int info(const std::string& path) {
   if (is_comparison_file(path)) return comparison_info(path);
   if (is_propagation_file(path)) return propagation_info(path);
   if (is_area_file(path)) return area_info(path);
+  if (is_placement_file(path)) return placement_info(path);
   if (std::filesystem::path(path).extension() == ".wav") return wav_info(path);
   check_kind_of_file(path);
   const PingFile file(path);
@@ -189,8 +191,8 @@ void add_info_command(Program& program) {
         command
             .add_option(
                 "FILE", options->path,
-                "HDF5 of asdic ping (NAME.XXXX.part too), process, study, merge, area, field, "
-                "arrivals or rays, or .shd, .arr, .ray, .wav")
+                "HDF5 of asdic ping (NAME.XXXX.part too), process, study, merge, area, place, "
+                "field, arrivals or rays, or .shd, .arr, .ray, .wav")
             .required();
         command.add_flag(
             "--check", options->check,

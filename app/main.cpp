@@ -16,6 +16,7 @@ std::vector<CommandGroup> overview() {
            {{"ping", "what every phone receives, into an HDF5 file"},
             {"process", "what a sonar makes of it: detections, places, tracks"},
             {"area", "what it sees all round: echo, reverberation, detection"},
+            {"place", "where sensors are best put, and how sure that is"},
             {"study", "many pings with drawn conditions: probability of detection"},
             {"merge", "put the parts of a study together"},
             {"recover", "a ping file out of what a killed run left"},
@@ -69,6 +70,7 @@ int run(int argc, char** argv) {
   add_compare_command(program);
   add_field_command(program);
   add_area_command(program);
+  add_place_command(program);
   add_process_command(program);
   add_study_command(program);
   add_merge_command(program);

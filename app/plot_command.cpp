@@ -6,6 +6,7 @@
 #include "app/command.h"
 #include "app/picture_source.h"
 #include "app/pictures.h"
+#include "app/place_info.h"
 #include "app/study_comparison.h"
 #include "app/study_info.h"
 #include "core/error.h"
@@ -64,8 +65,9 @@ void check_drawable(const std::filesystem::path& file) {
   const auto wrong = [&](const std::string& got) {
     return InputError({.where = file.string(),
                        .got = got,
-                       .expected = "a file to draw: HDF5 of asdic ping, area, study, merge, field, "
-                                   "arrivals or rays, or .shd, .arr, .ray, or a scenario, .toml"});
+                       .expected =
+                           "a file to draw: HDF5 of asdic ping, area, place, study, merge, field, "
+                           "arrivals or rays, or .shd, .arr, .ray, or a scenario, .toml"});
   };
   std::error_code error;
   if (!std::filesystem::exists(file, error)) throw wrong("no such file");
@@ -117,6 +119,8 @@ int plot(const PlotOptions& options) {
     check_comparison(given);
   } else if (is_area_file(given)) {
     static_cast<void>(read_coverage_summary(given));
+  } else if (is_placement_file(given)) {
+    static_cast<void>(study::read_placement_answer(given));
   } else if (is_ping_file(given)) {
     static_cast<void>(PingFile(given));
   } else {
@@ -148,10 +152,10 @@ void add_plot_command(Program& program) {
       [](const Command& command) {
         auto options = std::make_shared<PlotOptions>();
         command
-            .add_option(
-                "FILE", options->scenario.path,
-                "HDF5 file of asdic ping, area, study, field, arrivals or rays; .shd, .arr or "
-                ".ray; or a scenario, .toml")
+            .add_option("FILE", options->scenario.path,
+                        "HDF5 file of asdic ping, area, place, study, field, arrivals or rays; "
+                        ".shd, .arr or "
+                        ".ray; or a scenario, .toml")
             .required();
         command
             .add_option("-o,--output", options->folder,

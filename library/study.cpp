@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <thread>
 
+#include "io/hdf5/own_files.h"
 #include "io/ping/provenance.h"
 #include "library/ping_access.h"
+#include "library/watched.h"
+#include "study/placement/placement_file.h"
+#include "study/placement/placement_reader.h"
 #include "study/plan/study.h"
 #include "study/reader/study_reader.h"
 #include "study/runs/run_study.h"
@@ -108,6 +112,28 @@ StudyResult study(const std::filesystem::path& file, const std::filesystem::path
         return result;
       },
       {file, output});
+}
+
+std::vector<std::string> write_placement(const std::filesystem::path& output,
+                                         const std::filesystem::path& plan,
+                                         const std::vector<std::string>& changes,
+                                         const Watch& watch) {
+  return watched(
+      watch,
+      [&] {
+        const detail::study::PlacementPlan read = detail::study::read_placement(plan, changes);
+        detail::OutputRules rules{.own = detail::own::hdf5, .inputs = {plan}, .option = "output"};
+        for (const auto& option : read.options) rules.inputs.push_back(option.path);
+        detail::OutputFile file(output, rules);
+        const detail::study::Placement found =
+            detail::study::place_sensors(read, [&](double share) {
+              if (watch.progress) watch.progress(static_cast<int>(1000.0 * share), 1000);
+              return true;
+            });
+        detail::study::write_placement(std::move(file), read, found);
+        return found.warnings;
+      },
+      {plan, output});
 }
 
 StudyResult read_study(const std::filesystem::path& output) {

@@ -103,6 +103,7 @@ PingScore score_detections(std::span<const Detection> detections, std::span<cons
       const Detection& own = detections[static_cast<std::size_t>(row.detection)];
       const Vec3 received_at = array.at(own.time).position;
       const Separation truth = separation(received_at, target.position);
+      row.from_array = (target.position - received_at).head<2>();
       for (const Location& place : own.locations) {
         const Vec3 off = place.position - target.position;
         const double error = std::isnan(place.bearing) ? std::abs(place.range - truth.range)
@@ -110,6 +111,7 @@ PingScore score_detections(std::span<const Detection> detections, std::span<cons
         if (!std::isnan(row.position_error) && error >= row.position_error) continue;
         const Separation seen = separation(received_at, place.position);
         row.position_error = std::isnan(place.bearing) ? std::nan("") : error;
+        if (!std::isnan(place.bearing)) row.error = off.head<2>();
         row.range_error = (std::isnan(place.bearing) ? place.range : seen.range) - truth.range;
         row.bearing_error = std::isnan(place.bearing)
                                 ? std::nan("")

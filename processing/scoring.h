@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <optional>
 #include <span>
 #include <string>
@@ -58,6 +59,8 @@ struct TargetScore {
   double position_error = 0.0;  ///< horizontal, of the better of two sides; NaN without a place [m]
   double range_error = 0.0;     ///< found − true, from the array; NaN [m]
   double bearing_error = 0.0;   ///< found − true; NaN [rad]
+  Vec2 error{std::nan(""), std::nan("")};       ///< found − true, of that side; NaN [m]
+  Vec2 from_array{std::nan(""), std::nan("")};  ///< where it was, of a detected one; NaN [m]
 };
 
 struct PingScore {

@@ -22,6 +22,7 @@
 
 #include "asdic/export.h"
 #include "asdic/ping.h"
+#include "asdic/watch.h"
 
 namespace asdic {
 
@@ -69,5 +70,14 @@ struct ASDIC_API StudyResult {
                                           const StudyOptions& options = {});
 /// The table of a study's file.
 [[nodiscard]] ASDIC_API StudyResult read_study(const std::filesystem::path& output);
+
+/// Says where sensors are best put, into a file, as `asdic place` does (docs/formats/placement.md).
+/// A file that is there is replaced. \return warnings   \throws InputError, RunError, Stopped
+///
+/// \param plan  a file   \param changes  "key.path=value" each, as of --set
+ASDIC_API std::vector<std::string> write_placement(const std::filesystem::path& output,
+                                                   const std::filesystem::path& plan,
+                                                   const std::vector<std::string>& changes = {},
+                                                   const Watch& watch = {});
 
 }  // namespace asdic

@@ -16,6 +16,7 @@ from .channel import Channel
 from .datasets import group
 from .files import open  # noqa: A004  asdic.open
 from .pages import page
+from .placements import place
 from .places import Ocean, ocean
 from .processing import Processed, process
 from .scenario import Scenario, settings
@@ -34,4 +35,4 @@ def __getattr__(name: str):
 
 __all__ = ["Arrivals", "AsdicWarning", "Channel", "InputError", "Measure", "Ocean", "Processed",
            "RunError", "Scenario", "Stopped", "StudyResult", "area", "bellhop", "build", "group", "ocean",
-           "open", "page", "process", "read_study", "settings", "study", "version"]
+           "open", "page", "place", "process", "read_study", "settings", "study", "version"]

@@ -44,7 +44,7 @@ from asdic_pictures.output import Tags as _Tags
 from . import _core, described, files
 
 __all__ = ["ambiguity", "area", "array", "arrivals", "bearing_time", "compare", "detections",
-           "geometry", "levels", "matched_filter", "ppi", "pressure", "pulse", "range_bearing",
+           "geometry", "levels", "matched_filter", "placement", "ppi", "pressure", "pulse", "range_bearing",
            "rays", "save", "sound_speed", "spectrogram", "study", "sweep", "tracks", "transmission_loss"]
 
 
@@ -246,6 +246,14 @@ def area(source, axes=None, what="signal_excess", **options):
     """
     with _told():
         return _api.of_area(what, source, axes, **options)
+
+
+def placement(source, axes=None, what="placement", **options):
+    """Where sensors are best put, of :func:`asdic.place` or a file of it. ``what=`` placement, candidates,
+    sensors or draws; ``depth=`` of the target [m], where there are several.
+    """
+    with _told():
+        return _api.of_placement(what, source, axes, **options)
 
 
 def compare(a, b, names=("A", "B"), axes=None, **options):

@@ -122,6 +122,23 @@ def of_area(name: str, source, axes=None, *, depth=None, limits=None, theme=None
         return tagged(_area.draw(found, name, layer, axes=axes, limits=_checked(limits)), **found.tags)
 
 
+def of_placement(name: str, source, axes=None, *, depth=None, theme=None):
+    """A picture of where sensors are best put. \\param depth  of the target [m]; none: the first"""
+    from . import placement
+    found = placement.read(source)
+    if name not in placement.ALL:
+        raise InputError("what", f'"{name}"', "one of " + ", ".join(placement.ALL))
+    layer = 0
+    if depth is not None:
+        layer = int(abs(found.depth - depth).argmin())
+        if abs(found.depth[layer] - depth) > 0.5:
+            raise InputError("depth", f"{depth:g} m", "one of " + ", ".join(f"{d:g}" for d in found.depth))
+    if reason := placement.nothing_to_show(found, name):
+        raise InputError(_source.name_of(source), reason, f"something to draw in {name}")
+    with _style.look(theme):
+        return tagged(placement.draw(found, name, layer, axes=axes), **found.tags)
+
+
 def of_scene(name: str, source, axes=None, *, limits=None, theme=None):
     from . import scene_pictures
     scene = source if isinstance(source, _scene.Scene) else _scene.read(source)

@@ -29,7 +29,7 @@ def arguments(argv):
     parser = argparse.ArgumentParser(prog="asdic plot", allow_abbrev=False,
                                      description="Draws the pictures of a file of asdic's.")
     parser.add_argument("file", metavar="FILE.h5",
-                        help="written by `asdic ping`, `area`, `field`, `arrivals`, `rays` or `study`")
+                        help="written by `asdic ping`, `area`, `place`, `field`, `arrivals`, `rays` or `study`")
     parser.add_argument("-o", "--output", metavar="DIR",
                         help="folder for the pictures (default: FILE without .h5); with --against "
                              "the picture")
@@ -231,6 +231,25 @@ def draw_area(options, wish: Wishes) -> None:
             wish.write(fig, f"{name}_{k + 1}" if several else name, told)
 
 
+def draw_placement(options, wish: Wishes) -> None:
+    """Where sensors are best put, a plan for each depth of the target."""
+    from . import placement
+
+    found = placement.read(options.file)
+    found.title = found.title or short_name((options.names or [options.file])[0])
+    wish.check_names(placement.ALL)
+    for name, told in placement.PICTURES.items():
+        if not wish.wants(name):
+            continue
+        if reason := placement.nothing_to_show(found, name):
+            wish.leave_out(name, reason)
+            continue
+        several = name == "placement" and found.depth.size > 1
+        for k, depth in enumerate(found.depth if several else found.depth[:1]):
+            fig = api.of_placement(name, found, depth=depth, theme=wish.theme)
+            wish.write(fig, f"{name}_{k + 1}" if several else name, told)
+
+
 def draw_scene(options, wish: Wishes) -> None:
     """A scenario before it runs."""
     from . import scene, scene_pictures
@@ -326,6 +345,9 @@ def run(argv=None) -> int:
         return 0
     if kind == "asdic area":
         draw_area(options, wish)
+        return 0
+    if kind == "asdic placement":
+        draw_placement(options, wish)
         return 0
     if kind == "asdic study":
         draw_study(options, wish)

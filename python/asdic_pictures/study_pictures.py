@@ -4,6 +4,7 @@ study holds nothing of the kind.
 from __future__ import annotations
 
 import numpy as np
+from matplotlib.lines import Line2D
 
 from . import style
 from .study_data import Column, Study, SummaryTable, spoken
@@ -17,6 +18,8 @@ WORTH = 10.0  # effective rows of an event that say something of its least proba
 CELLS = "roc_cells"  # the table of all cells without an echo
 RAYLEIGH = 1e4  # a shape of the K distribution that nobody tells from it
 TAIL = 0.1  # share of the values without an echo that the tail of an ROC is drawn after
+ELLIPSES = ("ellipses", "sight_ellipses")
+IN_UNITS = ("means", *ELLIPSES)  # tables of what is no probability
 DETAILS = ("path", "echo_time", "noise_level", "series_")  # measures that are left out first
 
 
@@ -146,6 +149,8 @@ def title(table: SummaryTable, names: list) -> str:
     some = f", {len(names)} of {every} measures" if len(names) < every else ""
     alone = [n for n in names if not beside(table, n)] or names
     what = spoken(alone[0]) if alone[0].startswith(("pd", "pfa", RARE)) else "means"
+    if table.name.startswith(ELLIPSES):
+        what = "errors of place, and their ellipses"
     what += ", and the false-alarm rate," if len(alone) < len(names) else ""
     if table.name.startswith("cells"):
         return f"Cells without an echo: {' and '.join(CELL_WORDS.get(n, n) for n in names)} against time"
@@ -176,7 +181,7 @@ def draw_by(study: Study) -> dict:
                          if table.name.startswith("cells") else table[name].label())
             if beside(table, name) or table.name.startswith(("cells", RARE)):
                 rate_axis(a, table, name)
-            elif table[name].values.size and not table.name.startswith("means"):
+            elif table[name].values.size and not table.name.startswith(IN_UNITS):
                 limit = top(table[f"{name}_high"].values)
                 a.set_ylim(-0.02 * limit, limit)
         figures[table.name] = fig
@@ -228,7 +233,7 @@ def draw_map(study: Study) -> dict:
                 if len(names) == 1 else "")
         for name, a in zip(names, axes):
             value = table[name].values.reshape(cells)
-            probability = not table.name.startswith("means")
+            probability = not table.name.startswith(IN_UNITS)
             limit = top(table[f"{name}_high"].values) if probability else None
             image = a.pcolormesh(across, down, value.T, cmap=style.MAP,
                                  vmin=0.0 if probability else None,
@@ -244,6 +249,60 @@ def draw_map(study: Study) -> dict:
             if probability and len(names) == 1:
                 numbers(a, across, down, value, image)
         figures[table.name] = fig
+    return figures
+
+
+def in_metres(most: float):
+    """→ scale and unit of places"""
+    return (1e-3, "km") if most >= 3000.0 else (1.0, "m")
+
+
+def draw_ellipses(study: Study) -> dict:
+    """Errors of place on the plan about the array: of each bin the ellipse, about where its targets are found on the
+    mean. Ellipses are larger than they are by a round factor where they would be dots.
+    """
+    figures = {}
+    for table in study.tables(lambda t: t.name.startswith("ellipses") and "_by_" in t.name):
+        east, north = table["target_east"].values, table["target_north"].values
+        major, minor = table["major"].values, table["minor"].values
+        good = np.isfinite(east) & np.isfinite(major)
+        if not good.any():
+            continue
+        far = float(np.max(np.hypot(east[good], north[good]))) or 1.0
+        typical = float(np.median(major[good])) or 1.0
+        exact = 0.06 * far / typical
+        larger = max(1.0, 10.0 ** np.floor(np.log10(exact)) * max(f for f in (1, 2, 5)
+                     if f <= exact / 10.0 ** np.floor(np.log10(exact)))) if exact > 1.0 else 1.0
+        scale, unit = in_metres(far)
+        fig, axes = style.figure("Where targets are found: ellipses of errors of place", 8.2)
+        turn = np.linspace(0.0, 2.0 * np.pi, 73)
+        for row in np.flatnonzero(good):
+            bearing = np.radians(table["axis_deg"].values[row])
+            u, v = larger * major[row] * np.cos(turn), larger * minor[row] * np.sin(turn)
+            off = larger * table["east_bias"].values[row], larger * table["north_bias"].values[row]
+            x = east[row] + off[0] + u * np.sin(bearing) + v * np.cos(bearing)
+            y = north[row] + off[1] + u * np.cos(bearing) - v * np.sin(bearing)
+            axes.fill(scale * x, scale * y, color=style.colour(0), alpha=0.25, lw=0)
+            axes.plot(scale * x, scale * y, color=style.colour(0), lw=1.2)
+            axes.plot(scale * np.array([east[row], east[row] + off[0]]), scale * np.array([north[row], north[row] + off[1]]),
+                      color=style.INK, lw=0.9)
+            axes.plot(scale * east[row], scale * north[row], ls="none", marker="+", ms=6, color=style.INK)
+            axes.annotate(f"{table['found'].values[row]:.0f}", (scale * x[y.argmax()], scale * y.max()), (0, 3),
+                          textcoords="offset points", ha="center", fontsize=7.5, color=style.NOTE)
+        axes.plot(0.0, 0.0, ls="none", marker="^", ms=8, color=style.INK)
+        axes.set_aspect("equal", adjustable="datalim", anchor="W")
+        axes.grid(True)
+        axes.set_xlabel(f"east of the array / {unit}")
+        axes.set_ylabel(f"north of the array / {unit}")
+        drawn_so = f", ellipses and biases drawn {larger:g} times larger" if larger > 1.0 else ""
+        heading(axes, study, f"mean errors and ellipses that hold the next one with {study.interval}; numbers: found "
+                             f"targets{drawn_so}")
+        style.legend_below(axes, [
+            Line2D([], [], ls="none", marker="^", ms=8, color=style.INK, label="array"),
+            Line2D([], [], ls="none", marker="+", ms=6, color=style.INK, label="mean place of a bin's targets"),
+            Line2D([], [], color=style.INK, lw=0.9, label="to where they are found on the mean"),
+            Line2D([], [], color=style.colour(0), lw=1.2, label="ellipse")])
+        figures[f"{table.name}_plan"] = fig
     return figures
 
 
@@ -567,7 +626,7 @@ def draw_convergence(study: Study) -> dict:
     return {"convergence": fig}
 
 
-ALL = (draw_by, draw_map, draw_roc, draw_histograms, draw_sensitivity, draw_interactions,
+ALL = (draw_by, draw_map, draw_ellipses, draw_roc, draw_histograms, draw_sensitivity, draw_interactions,
        draw_convergence)
 
 
@@ -587,6 +646,8 @@ def names_of(study: Study, one) -> list:
     """What a function of ALL may draw."""
     if one in (draw_by, draw_map):
         return [t.name for t in study.summary if "_by_" in t.name]
+    if one is draw_ellipses:
+        return [f"{t.name}_plan" for t in study.summary if t.name.startswith("ellipses") and "_by_" in t.name]
     return [{draw_roc: "roc", draw_histograms: "histograms", draw_sensitivity: "sensitivity",
              draw_interactions: "interactions", draw_convergence: "convergence"}[one]]
 

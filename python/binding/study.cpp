@@ -54,6 +54,13 @@ py::dict run(const std::filesystem::path& file, const std::filesystem::path& out
 
 void add_study(py::module_& module) {
   module.def("study", &run);
+  module.def(
+      "write_placement", [](const std::filesystem::path& output, const std::filesystem::path& plan,
+                            const std::vector<std::string>& changes, const py::object& progress) {
+        return watched(
+            [&](const Watch& watch) { return write_placement(output, plan, changes, watch); },
+            progress);
+      });
   module.def("read_study",
              [](const std::filesystem::path& file) { return shown(read_study(file)); });
 }

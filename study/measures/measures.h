@@ -24,7 +24,8 @@ inline constexpr std::array<AnyMeasure, sizeof...(M)> measure_list{any_measure<M
 inline constexpr std::span<const AnyMeasure> all_measures =
     measure_list<EchoLevel, ReverberationLevel, NoiseLevel, EchoToBackground, SignalExcess, Paths,
                  EchoTime, DetectionSignalExcess, StrongestPath, MatchedFilterAnswer,
-                 DetectionByReceiver, LocalisationError, FalseAlarms, SeriesLevel>;
+                 DetectionByReceiver, LocalisationError, LocalisationEllipse, FalseAlarms,
+                 SeriesLevel>;
 
 /// The columns of a study's measures. \param scenario  of any realisation: its targets
 [[nodiscard]] std::vector<Column> measure_columns(

@@ -76,7 +76,9 @@ ReceiverAnswers receiver_answers(const PingSimulator& simulator, const PingRecor
                           .snr_db = no_value,
                           .position_error = no_value,
                           .range_error = no_value,
-                          .bearing_error = no_value};
+                          .bearing_error = no_value,
+                          .error = target.error,
+                          .from_array = target.from_array};
     if (target.hit) {
       answer.snr_db =
           processed.result.detections[static_cast<std::size_t>(target.detection)].snr_db;

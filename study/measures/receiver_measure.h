@@ -8,11 +8,13 @@ namespace asdic::detail::study {
 
 /// What the whole receiver makes of one target.
 struct ReceiverAnswer {
-  bool hit = false;             ///< a detection is the target's
-  double snr_db = 0.0;          ///< of the loudest of those; NaN
-  double position_error = 0.0;  ///< horizontal; NaN without a place [m]
-  double range_error = 0.0;     ///< found − true; NaN [m]
-  double bearing_error = 0.0;   ///< found − true; NaN [rad]
+  bool hit = false;                ///< a detection is the target's
+  double snr_db = 0.0;             ///< of the loudest of those; NaN
+  double position_error = 0.0;     ///< horizontal; NaN without a place [m]
+  double range_error = 0.0;        ///< found − true; NaN [m]
+  double bearing_error = 0.0;      ///< found − true; NaN [rad]
+  Vec2 error = Vec2::Zero();       ///< found − true, east and north; NaN without a place [m]
+  Vec2 from_array = Vec2::Zero();  ///< where the target was; NaN where it is missed [m]
 };
 struct ReceiverAnswers {
   std::vector<ReceiverAnswer> targets;

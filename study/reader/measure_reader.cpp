@@ -141,7 +141,9 @@ MeasurePlan read_measure(TomlTable table, const Scenario& scenario) {
     plan.cells = read_cells(table, scenario);
   }
   if (table.has("receiver") && !plan.uses_receiver())
-    throw table.fault("receiver", "localisation_error or a detection by the receiver with it");
+    throw table.fault(
+        "receiver",
+        "localisation_error, localisation_ellipse or a detection by the receiver with it");
   read_receiver(table.table("receiver"), plan);
   table.finish();
   const bool nothing = plan.wanted.empty() && !plan.needs_samples();

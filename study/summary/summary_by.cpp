@@ -44,7 +44,7 @@ std::vector<SummaryTable> tables_by(const Study& study, const std::vector<Summar
     return mean;
   };
 
-  std::vector<SummaryTable> all;
+  std::vector<SummaryTable> all = ellipse_tables(study, cells, suffix, along, table);
   std::vector<std::size_t> others;
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     const Column& column = table.columns[c];

@@ -8,6 +8,8 @@
 
 namespace asdic::detail::study {
 
+class Cells;
+
 // The tables of a summary, one function each. docs/theory/studies.md
 
 /// A measure that is 0 or 1, whose mean is a probability.
@@ -47,6 +49,12 @@ void check_summary_names(const Study& study);
 [[nodiscard]] std::vector<SummaryTable> tables_by(const Study& study,
                                                   const std::vector<SummaryAxis>& axes,
                                                   const Table& table);
+/// Ellipses of the errors of place in these cells, where localisation_ellipse is measured:
+/// "ellipses_by_range", and along and across the line of sight "sight_ellipses_by_range".
+[[nodiscard]] std::vector<SummaryTable> ellipse_tables(const Study& study, const Cells& cells,
+                                                       const std::string& suffix,
+                                                       const std::string& along,
+                                                       const Table& table);
 /// Receiver operating characteristic of each target's matched filter, and the area under it.
 [[nodiscard]] std::vector<SummaryTable> roc_tables(const SummaryPlan& plan, const Table& table);
 /// Of the cells without an echo: rates by time, at every power of ten by counting or by a tail that

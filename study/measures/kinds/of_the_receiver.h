@@ -20,6 +20,13 @@ struct LocalisationError {
   static void of_target(const MeasuredPing& ping, std::size_t target, Collector& to);
 };
 
+/// The same in its parts, of which ellipses are made.
+struct LocalisationEllipse {
+  static constexpr std::string_view name = "localisation_ellipse";
+  static constexpr Needs needs{.targets = true, .receiver = true};
+  static void of_target(const MeasuredPing& ping, std::size_t target, Collector& to);
+};
+
 /// Detections that are no target's, of any receiver.
 struct FalseAlarms {
   static constexpr std::string_view name = "";

@@ -239,6 +239,15 @@ class Files:
                    "2km", "--bearings", "12", "--ranges", "20")
         return ["area.h5"]
 
+    def kind_placement(self):
+        (self.folder / "placed.toml").write_text(sea(more=ORIGIN))
+        (self.folder / "plan.toml").write_text(
+            '[placement]\nscenario = "placed.toml"\nsensors = 2\nbearings = 12\nranges = 20\nreach = 2000.0\n'
+            'draws = 2\nmap_error = "cells"\n[placement.places]\npoints = [[0.0, 0.0], [500.0, 0.0], [0.0, 900.0]]\n'
+            '[placement.cells]\neast = [-1000.0, 1000.0]\nnorth = [-1000.0, 1000.0]\nstep = 500.0\n')
+        self.asdic("place", "plan.toml", "-o", "placed.h5", "--quiet")
+        return ["placed.h5"]
+
     def kind_field(self):
         cases = {"grid": run_of("field"), "incoherent": run_of("field", "incoherent"),
                  "places": run_of("field", irregular=True)}
@@ -303,7 +312,7 @@ class Files:
                    stdin='{"asdic": 1}\n{"command": "ping"}\n')
         return [str(p.relative_to(self.folder)) for p in self.folder.glob("served/**/*.h5")]
 
-    KINDS = ["ping", "processed", "area", "field", "arrivals", "rays", "converted", "study", "served"]
+    KINDS = ["ping", "processed", "area", "placement", "field", "arrivals", "rays", "converted", "study", "served"]
 
     def others(self):
         """Results in other formats, which `asdic info` reads."""

@@ -268,6 +268,27 @@ class Areas(Case):
             self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertEqual([p.name for p in (self.folder / "p").iterdir()], ["signal_excess.png"])
 
+    def test_a_placement_of_a_plan_and_of_its_file(self):
+        (self.folder / "sea.toml").write_text(SEA)
+        (self.folder / "plan.toml").write_text(
+            '[placement]\nscenario = "sea.toml"\nsensors = 2\nbearings = 12\nranges = 20\nreach = 4e3\n'
+            '[placement.places]\npoints = [[0.0, 0.0], [1500.0, 0.0], [0.0, 2500.0]]\n'
+            '[placement.cells]\neast = [-3000.0, 3000.0]\nnorth = [-3000.0, 3000.0]\nstep = 1000.0\n')
+        with self.assertWarns(asdic.AsdicWarning):      # nothing was drawn
+            found = asdic.place(self.folder / "plan.toml", changes={"placement.sensors": 1})
+        self.assertEqual(found.sensor_place.size, 1)
+        share = float((found.weight * found.detection_probability).sum())
+        self.assertAlmostEqual(share, float(found.share[0]), places=5)
+        self.assertAlmostEqual(share, float(found.candidate_share.max()), places=5)    # one sensor: the best alone
+        self.assertEqual(faults(pictures.placement(found)), [])
+        with self.assertRaisesRegex(asdic.InputError, "nothing was drawn"):
+            pictures.placement(found, what="draws")
+        done = subprocess.run([PROGRAM, "place", "plan.toml", "-o", "p.h5", "-q", "--set", "placement.sensors=1"],
+                              cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        np.testing.assert_array_equal(asdic.open(self.folder / "p.h5").detection_probability.values,
+                                      found.detection_probability.values)
+
     def test_a_ping_on_the_map(self):
         """The loudest cell of the map is at the target, by its bearing, or at its mirror image; its range is
         that of the slant way. Of a bistatic pair any scatterer's range comes out of its delay.

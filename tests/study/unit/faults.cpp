@@ -180,8 +180,9 @@ TEST(StudyFile, EveryFaultNamesLineKeyFoundAndExpected) {
       {study + "[measure]\nsnr_matched = true\nmatched_filter = { phone = 2 }\n",
        "study.toml:5: measure.matched_filter.phone: found 2, expected a whole number from 0 to 1"},
       {study + "[measure]\necho_level = true\n[measure.receiver]\nmax_speed = 3\n",
-       "study.toml:5: measure.receiver: found a table, expected localisation_error or a detection "
-       "by the receiver with it"},
+       "study.toml:5: measure.receiver: found a table, expected localisation_error, "
+       "localisation_ellipse or a "
+       "detection by the receiver with it"},
       {study + "[measure]\nlocalisation_error = true\n[measure.receiver]\nmax_speed = 601\n",
        "study.toml:6: measure.receiver.max_speed: found 601 m/s, expected a speed from 0 to 600 "
        "m/s"},
