@@ -39,6 +39,9 @@ struct Study {
   MeasurePlan measure;              ///< [measure]
   SummaryPlan summary;              ///< [summary]
 
+  std::vector<std::string> until;  ///< [study] until, as --until takes each of them
+  std::string until_where;         ///< "study.toml:7: study.until"
+
   TomlValue scenario;  ///< what the variables edit: with its include and the overrides in it
   TomlValue document;  ///< [study], [set], [vary], [correlation], [measure], [summary], with their
                        ///< overrides

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "study/summary/intervals.h"
+#include "study/summary/own_columns.h"
 #include "study/summary/summary_parts.h"
 
 namespace asdic::detail::study {
@@ -54,7 +55,7 @@ std::string place_of(const Study& study, std::size_t entry) {
 }  // namespace
 
 void check_summary_names(const Study& study) {
-  const std::vector<Column> all = columns(study);
+  const std::vector<Column> all = answer_columns(study);
   if (const std::string name = twice(all); !name.empty())
     throw InputError({.where = study.path.string() + ": [vary] and [measure]",
                       .got = "two columns \"" + name + "\"",
@@ -84,6 +85,7 @@ void check_summary_names(const Study& study) {
 }
 
 bool is_proportion(const Column& column) noexcept {
+  if (!column.formula.empty()) return column.event;
   const auto is = [&](std::string_view name) {
     return column.name == name || column.name.starts_with(std::string(name) + '_');
   };
@@ -91,6 +93,7 @@ bool is_proportion(const Column& column) noexcept {
 }
 
 std::string proportion_name(const Column& column) {
+  if (!column.formula.empty()) return "p_" + column.name;
   const std::string_view word = column.name.starts_with("detected") ? "detected" : "false_alarm";
   return (word == "detected" ? "pd" : "pfa") + column.name.substr(word.size());
 }
@@ -245,7 +248,10 @@ std::string unexplained_note(const Study& study, const Table& table,
 
 }  // namespace
 
-Summary summary_of(const Study& study, const Table& table) {
+namespace {
+
+/// \param table  with its own columns
+Summary summary_of_answers(const Study& study, const Table& table) {
   const SummaryPlan& plan = study.summary;
   std::string intervals = "as of independent draws";
   if (clusters_of(study).kind != Clusters::Kind::rows)
@@ -277,6 +283,7 @@ Summary summary_of(const Study& study, const Table& table) {
   add(cell_tables(study, table), "docs/theory/studies.md, false-alarm rates");
   if (plan.convergence) add(convergence_table(study, table), method);
   made.laws = law_tables(study);
+  made.densities = row_densities(study, table);
   made.warnings = rate_warnings(study, made.tables);
   if (!plan.sensitivity) return made;
   std::vector<SummaryTable> sensitivity =
@@ -287,9 +294,21 @@ Summary summary_of(const Study& study, const Table& table) {
   return made;
 }
 
+}  // namespace
+
+Summary summary_of(const Study& study, const Table& rows) {
+  if (study.summary.own.empty()) return summary_of_answers(study, rows);
+  const Table table = with_own(study, rows);
+  Summary made = summary_of_answers(study, table);
+  const auto first = static_cast<std::ptrdiff_t>(table.columns.size() - study.summary.own.size());
+  made.own.columns.assign(table.columns.begin() + first, table.columns.end());
+  made.own.values.assign(table.values.begin() + first, table.values.end());
+  return made;
+}
+
 RunningEstimate::RunningEstimate(const Study& study)
-    : level_(study.summary.confidence), mean_(clusters_of(study)) {
-  const std::vector<Column> all = columns(study);
+    : level_(study.summary.confidence), mean_(clusters_of(study)), own_(study) {
+  const std::vector<Column> all = answer_columns(study);
   const std::optional<std::size_t> question = first_question(all);
   column_ = question.value_or(all.size());
   interval_ = study.summary.interval;
@@ -300,12 +319,19 @@ RunningEstimate::RunningEstimate(const Study& study)
 }
 
 void RunningEstimate::add(const Row& row) {
-  if (!row.valid || column_ >= row.values.size()) return;
-  if (!std::isfinite(row.values[column_])) {
+  if (own_.empty()) return take(row, row.values);
+  std::vector<double> values = row.values;
+  own_.append(values, row.valid);
+  take(row, values);
+}
+
+void RunningEstimate::take(const Row& row, const std::vector<double>& values) {
+  if (!row.valid || column_ >= values.size()) return;
+  if (!std::isfinite(values[column_])) {
     ++left_out_;
     return;
   }
-  mean_.add(row.index, row.values[column_]);
+  mean_.add(row.index, values[column_]);
 }
 
 std::optional<Estimate> RunningEstimate::estimate() const {
