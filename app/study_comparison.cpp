@@ -13,6 +13,7 @@
 #include "app/output.h"
 #include "app/pictures.h"
 #include "core/error.h"
+#include "io/files/files_read.h"
 #include "io/ping/provenance.h"
 #include "io/result/result_file.h"
 #include "study/reader/study_reader.h"
@@ -198,6 +199,7 @@ std::uint64_t make_rounds(const StudyOptions& options, const Sides& sides,
       StudyOptions one = options;
       one.paths = {options.paths[k]};
       one.output = sides.files[k].string();
+      forget_read(sides.files[k]);  // of the round before
       one.until.clear();
       one.pays_no_heed = true;
       one.fresh = fresh;

@@ -152,12 +152,12 @@ def rules_stop():
 def comparisons_go_on_in_rounds():
     write("weak.toml", source=224.0)
     write("loud.toml")
-    said = run("study", "--compare", "weak.toml", "loud.toml", "-o", "rounds.h5", "--until", "p_over=0.06")
+    said = run("study", "--compare", "weak.toml", "loud.toml", "-o", "rounds.h5", "--until", "p_over=0.04")
     with h5py.File("rounds.h5") as f:
         n = int(f.attrs["realisations"])
         differences = {name: column[:] for name, column in f["summary/differences"].items()}
-        check(n < 400 and f.attrs["stopped_by"].decode() == "--until p_over=0.06", f"{n} rows, {dict(f.attrs)}")
-    check(n in (100, 200), f"{n} is no round")
+        check(n < 400 and f.attrs["stopped_by"].decode() == "--until p_over=0.04", f"{n} rows, {dict(f.attrs)}")
+    check(n == 200, f"{n} rows, not 200")
     check("margin: " in said and "loud less weak is 2 (2 to 2)" in said, said)
     check("over: " in said and f"enough after {n} realisations" in said, said)
     check("p over by range, best of 4 bins" in said, said)
@@ -168,7 +168,7 @@ def comparisons_go_on_in_rounds():
             check(np.array_equal(column[:], differences[name], equal_nan=True), f"differences/{name}")
     # Rows that are there stay, and more of them change nothing.
     run("study", "--compare", "weak.toml", "loud.toml", "-o", "all.h5")
-    run("study", "--compare", "weak.toml", "loud.toml", "-o", "again.h5", "--until", "p_over=0.06")
+    run("study", "--compare", "weak.toml", "loud.toml", "-o", "again.h5", "--until", "p_over=0.04")
     with h5py.File("again.h5") as f:
         check(int(f.attrs["realisations"]) == n, "another end where there are more rows")
     said = run("study", "--compare", "weak.toml", "loud.toml", "-o", "rule.h5", "--until",
