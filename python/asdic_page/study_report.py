@@ -241,7 +241,7 @@ def of_comparison(path) -> tuple:
     with h5py.File(path, "r") as f:
         with style.look("light"):
             pictures = figures(study_comparison.draw(comparison))
-        order = sorted(comparison.summary, key=lambda t: (t.name != "differences", not t.name.startswith("pd_")))
+        order = sorted(comparison.summary, key=lambda t: (t.name != "differences", not t.name.startswith(("pd_", "p_"))))
         unlike = [_text(n) for n in np.ravel(f.attrs.get("unlike_inputs", []))]
         body = [f"<h1>{escape(title)}</h1><p class=\"note\">{escape(comparison.heading())}</p>",
                 f"<pre>{escape(_words(f['answers']))}</pre>"]

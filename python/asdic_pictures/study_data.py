@@ -15,7 +15,7 @@ from .data import InputError
 
 KIND = "asdic study"
 
-PROPORTIONS = {"pd": "probability of detection", "pfa": "probability of false alarm"}
+PROPORTIONS = {"pd": "probability of detection", "pfa": "probability of false alarm", "p": "probability"}
 DECIBELS = "_db"
 DEGREES = "_deg"
 SHORT = {"snr": "SNR"}
@@ -46,6 +46,7 @@ class Column:
     values: np.ndarray
     role: str = ""
     labels: list = field(default_factory=list)
+    event: bool = False  # of one's own: it happens, or not
 
     def label(self) -> str:
         """For an axis: "range / km", "echo level / dB re 1 µPa"."""
@@ -162,7 +163,8 @@ def _column(name, dataset, rows=slice(None)) -> Column:
     labels = [_text(label) for label in np.ravel(attributes.get("labels", []))]
     unit = " re ".join(_text(attributes[key]) for key in ("units", "reference") if key in attributes)
     return Column(name, unit, _text(attributes.get("long_name", name)),
-                  np.asarray(dataset[()], float)[rows], _text(attributes.get("role", "")), labels)
+                  np.asarray(dataset[()], float)[rows], _text(attributes.get("role", "")), labels,
+                  bool(np.ravel(attributes.get("event", 0))[0]))
 
 
 def _summary(name, group) -> SummaryTable:

@@ -148,7 +148,7 @@ def title(table: SummaryTable, names: list) -> str:
     every = len(varying(table))
     some = f", {len(names)} of {every} measures" if len(names) < every else ""
     alone = [n for n in names if not beside(table, n)] or names
-    what = spoken(alone[0]) if alone[0].startswith(("pd", "pfa", RARE)) else "means"
+    what = spoken(alone[0]) if alone[0].startswith(("pd", "pfa", "p_", RARE)) else "means"
     if table.name.startswith(ELLIPSES):
         what = "errors of place, and their ellipses"
     what += ", and the false-alarm rate," if len(alone) < len(names) else ""
@@ -447,7 +447,7 @@ def draw_histograms(study: Study) -> dict:
         law = study.laws.get(column.name)
         colour = style.BLUE if column.role == "measure" else style.GREY
         different = np.unique(values).size
-        yes_or_no = column.name.startswith(YES_OR_NO) and set(values) <= {0.0, 1.0}
+        yes_or_no = (column.event or column.name.startswith(YES_OR_NO)) and set(values) <= {0.0, 1.0}
         if column.labels:
             count = np.bincount(values.astype(int), minlength=len(column.labels))
             a.bar(np.arange(count.size), count, color=colour)

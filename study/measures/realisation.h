@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,10 @@ struct Column {
   std::string unit;  ///< "m/s", "dB re 1 µPa", "1"
   std::string meaning;
   Role role = Role::measure;
-  std::vector<std::string> labels;  ///< of a categorical column, whose values are indices into it
+  std::vector<std::string> labels;   ///< of a categorical column, whose values are indices into it
+  std::string formula{};             ///< of a measure of [summary.own], of which rows hold nothing
+  bool event = false;                ///< such a one that is 0 or 1
+  std::optional<bool> least_best{};  ///< such a one that says so
 };
 
 /// What places a kept time series in time and band: p(t) = Re(x_k e^{i2πf_c(t + t_0)}) at

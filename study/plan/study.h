@@ -43,6 +43,9 @@ struct Study {
   RarePlan rare{};                  ///< [rare]
   Proposal proposal{};              ///< from where inputs are drawn instead of their laws
 
+  std::vector<std::string> until;  ///< [study] until, as --until takes each of them
+  std::string until_where;         ///< "study.toml:7: study.until"
+
   TomlValue scenario;  ///< what the variables edit: with its include and the overrides in it
   TomlValue document;  ///< [study], [set], [vary], [correlation], [measure], [rare], [summary],
                        ///< with their overrides

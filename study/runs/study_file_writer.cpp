@@ -44,6 +44,19 @@ void StudyFileWriter::write_table() {
                                                          : "measure");
     file_.attach_scales(path, {"index"});
   }
+  // Of a catalogue too: they are made of its rows, not of the parts'.
+  const Table& own = results_.summary.own;
+  for (std::size_t i = 0; i < own.columns.size(); ++i) {
+    const Column& c = own.columns[i];
+    const std::string path = "table/" + c.name;
+    file_.write<double>(path, own.values[i], {own.values[i].size()});
+    noted(path, own.values[i]);
+    describe_column(file_, path, c);
+    file_.set_attribute(path, "role", "measure");
+    file_.set_attribute(path, "formula", c.formula);
+    if (c.event) file_.set_attribute(path, "event", std::int64_t{1});
+    file_.attach_scales(path, {"index"});
+  }
   std::string faults;
   for (const std::string& fault : results_.faults) faults += fault + "\n";
   text("faults", faults, "why realisations were skipped, \"index: reason\" a line, the first 1000");
@@ -287,19 +300,30 @@ void StudyFileWriter::write_laws() {
       write("density", table.share, "probability density", unit == "1" ? "1" : '(' + unit + ")-1");
     write("cumulative", table.cumulative, "probability of the value or less", "1");
   }
+  for (const RowDensity& one : results_.summary.densities) {
+    const std::string path = "laws/" + one.column + "/density_of_row",
+                      unit = one.unit.substr(0, one.unit.find(" re "));
+    file_.write<double>(path, one.density, {one.density.size()});
+    describe(file_, path, "probability density of what the row drew, given its other inputs",
+             unit == "1" ? "1" : '(' + unit + ")-1");
+    file_.attach_scales(path, {"index"});
+    noted(path, one.density);
+  }
 }
 
 void StudyFileWriter::write_manifest() {
   Json datasets = Json::object();
   for (const auto& [name, noted] : noted_)
     datasets[name] = {{"shape", noted.shape}, {"sha256", noted.sha256}};
-  const Json manifest = {{"identity", results_.fingerprint.identity},
-                         {"first", results_.range.first},
-                         {"end", results_.range.end},
-                         {"rows", results_.table.index.size()},
-                         {"complete", results_.complete()},
-                         {"columns", Json::parse(to_json(results_.fingerprint.columns))},
-                         {"datasets", datasets}};
+  Json manifest = {{"identity", results_.fingerprint.identity},
+                   {"first", results_.range.first},
+                   {"end", results_.range.end},
+                   {"rows", results_.table.index.size()},
+                   {"complete", results_.complete()},
+                   {"columns", Json::parse(to_json(results_.fingerprint.columns))},
+                   {"datasets", datasets}};
+  if (!results_.summary.own.columns.empty())
+    manifest["own"] = Json::parse(to_json(results_.summary.own.columns));
   file_.write_text("manifest", manifest.dump());
   describe(file_, "manifest", "JSON: what the file is to hold, with SHA-256 of each dataset");
 }

@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "study/summary/intervals.h"
+#include "study/summary/own_columns.h"
 #include "study/summary/summary_parts.h"
 #include "study/summary/weighted_mean.h"
 
@@ -66,7 +67,7 @@ std::string place_of(const Study& study, std::size_t entry) {
 }  // namespace
 
 void check_summary_names(const Study& study) {
-  const std::vector<Column> all = columns(study);
+  const std::vector<Column> all = answer_columns(study);
   if (const std::string name = twice(all); !name.empty())
     throw InputError({.where = study.path.string() + ": [vary] and [measure]",
                       .got = "two columns \"" + name + "\"",
@@ -96,6 +97,7 @@ void check_summary_names(const Study& study) {
 }
 
 bool is_proportion(const Column& column) noexcept {
+  if (!column.formula.empty()) return column.event;
   const auto is = [&](std::string_view name) {
     return column.name == name || column.name.starts_with(std::string(name) + '_');
   };
@@ -104,6 +106,7 @@ bool is_proportion(const Column& column) noexcept {
 }
 
 std::string proportion_name(const Column& column) {
+  if (!column.formula.empty()) return "p_" + column.name;
   if (column.name == rare_event_column) return rare_event_probability;
   const std::string_view word = column.name.starts_with("detected") ? "detected" : "false_alarm";
   return (word == "detected" ? "pd" : "pfa") + column.name.substr(word.size());
@@ -317,7 +320,10 @@ std::string left_out_of(const Study& study, const Table& table) {
 
 }  // namespace
 
-Summary summary_of(const Study& study, const Table& table) {
+namespace {
+
+/// \param table  with its own columns
+Summary summary_of_answers(const Study& study, const Table& table) {
   const SummaryPlan& plan = study.summary;
   std::string intervals = "as of independent draws";
   const bool weighted = is_weighted(study);
@@ -350,6 +356,7 @@ Summary summary_of(const Study& study, const Table& table) {
   add(cell_tables(study, table), "docs/theory/studies.md, false-alarm rates");
   if (plan.convergence) add(convergence_table(study, table), method);
   made.laws = law_tables(study);
+  made.densities = row_densities(study, table);
   made.warnings = rate_warnings(study, made.tables);
   if (weighted) {
     add(drawn_from_table(study, table), "none");
@@ -367,10 +374,23 @@ Summary summary_of(const Study& study, const Table& table) {
   return made;
 }
 
+}  // namespace
+
+Summary summary_of(const Study& study, const Table& rows) {
+  if (study.summary.own.empty()) return summary_of_answers(study, rows);
+  const Table table = with_own(study, rows);
+  Summary made = summary_of_answers(study, table);
+  const auto first = static_cast<std::ptrdiff_t>(table.columns.size() - study.summary.own.size());
+  made.own.columns.assign(table.columns.begin() + first, table.columns.end());
+  made.own.values.assign(table.values.begin() + first, table.values.end());
+  return made;
+}
+
 RunningEstimate::RunningEstimate(const Study& study)
     : level_(study.summary.confidence),
-      mean_(clusters_of(study), is_weighted(study), WeightedMean::Of::all_rows) {
-  const std::vector<Column> all = columns(study);
+      mean_(clusters_of(study), is_weighted(study), WeightedMean::Of::all_rows),
+      own_(study) {
+  const std::vector<Column> all = answer_columns(study);
   const std::optional<std::size_t> question = first_question(all);
   column_ = question.value_or(all.size());
   weight_ = all.size();
@@ -384,14 +404,21 @@ RunningEstimate::RunningEstimate(const Study& study)
 }
 
 void RunningEstimate::add(const Row& row) {
-  if (column_ >= row.values.size()) return;
-  const double weight = weight_ < row.values.size() ? std::exp(row.values[weight_]) : 1.0;
-  if (!row.valid || !std::isfinite(row.values[column_])) {
+  if (own_.empty()) return take(row, row.values);
+  std::vector<double> values = row.values;
+  own_.append(values, row.valid);
+  take(row, values);
+}
+
+void RunningEstimate::take(const Row& row, const std::vector<double>& values) {
+  if (column_ >= values.size()) return;
+  const double weight = weight_ < values.size() ? std::exp(values[weight_]) : 1.0;
+  if (!row.valid || !std::isfinite(values[column_])) {
     if (row.valid) ++left_out_;
     mean_.leave_out(row.index, weight);
     return;
   }
-  mean_.add(row.index, row.values[column_], weight);
+  mean_.add(row.index, values[column_], weight);
 }
 
 std::optional<Estimate> RunningEstimate::estimate() const {

@@ -14,7 +14,8 @@ class Cells;
 
 /// A measure that is 0 or 1, whose mean is a probability.
 [[nodiscard]] bool is_proportion(const Column& column) noexcept;
-/// "pd" of "detected", "pfa" of "false_alarm", with a target's suffix.
+/// "pd" of "detected", "pfa" of "false_alarm", with a target's suffix; "p_loud" of one's own
+/// "loud".
 [[nodiscard]] std::string proportion_name(const Column& column);
 /// The column that the study is about: the first proportion, else the first measure. None: no
 /// measures.
@@ -73,6 +74,9 @@ void check_summary_names(const Study& study);
 [[nodiscard]] std::vector<SummaryTable> saltelli_tables(const Study& study, const Table& table);
 /// Of Saltelli's design the rows that are independent of one another, A and B of every block.
 [[nodiscard]] Table independent_rows(const Study& study, const Table& table);
+
+/// "range 12500, wind_speed 3.5": where a row of a table lies along its axes.
+[[nodiscard]] std::string place_in(const SummaryTable& table, std::size_t row);
 
 /// Spearman's rank correlation and its interval, by Fisher's transformation.
 struct RankCorrelation {
