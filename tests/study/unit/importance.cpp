@@ -207,11 +207,11 @@ TEST(Importance, AModeThatIsMissedIsTold) {
   EXPECT_EQ(unseen.warned, 40);
   FunctionStudy guarded = detects(1, mixture({{ScoreLaw{far, 1.0}}}), 3000);
   guarded.of = both;
-  const Said seen = of_many(guarded, 2e-6, 200);
+  const Said seen = of_many(guarded, 2e-6, 120);
   EXPECT_NEAR(seen.coverage.mean() / 2e-6, 1.0,
-              5.0 * seen.coverage.deviation() / 2e-6 / std::sqrt(200.0));
-  EXPECT_GT(seen.warned, 150);
-  EXPECT_LE(seen.silent_and_wrong, 16);  // 5 % and 2 standard deviations
+              5.0 * seen.coverage.deviation() / 2e-6 / std::sqrt(120.0));
+  EXPECT_GT(seen.warned, 80);
+  EXPECT_LE(seen.silent_and_wrong, 11);  // 5 % and 2 standard deviations
   FunctionStudy knows = detects(1, mixture({{ScoreLaw{far, 1.0}}, {ScoreLaw{-far, 1.0}}}), 2000);
   knows.of = both;
   expect_covers(of_many(knows, 2e-6, 100), 2e-6);
