@@ -92,8 +92,8 @@ void add_place_command(Program& program) {
                          "print the answer as JSON (docs/formats/placement.md)");
         command.add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
         command.footer(
-            "Example:  asdic place scenarios/placement/two_buoys.toml -o place.h5 && asdic plot "
-            "place.h5");
+            "Example:  asdic place scenarios/placement/strait.toml -o strait.h5 && asdic plot "
+            "strait.h5");
         command.runs([options] { return place(*options); });
       });
 }

@@ -111,7 +111,8 @@ class Search {
     bound(set);
     const bool all = settings_.method == PlacementMethod::exhaustive ||
                      (settings_.method == PlacementMethod::automatic &&
-                      number_of_sets(problem_) <= settings_.most_sets);
+                      number_of_sets(problem_) <= settings_.most_sets &&
+                      number_of_sets(problem_) * work_of_set() <= settings_.most_work);
     if (!all)
       for (int start = 0; start < settings_.starts; ++start) {
         const SensorSet drawn = drawn_set(start);
@@ -251,6 +252,12 @@ class Search {
       if (fits(set, c)) set.push_back(c);
     }
     return set;
+  }
+
+  /// Of looking at one set more: numbers that its last sensor's maps have.
+  [[nodiscard]] double work_of_set() const {
+    const double maps = problem_.pairs ? 2.0 * double(problem_.sensors) - 1.0 : 1.0;
+    return maps * double(size_);
   }
 
   /// Whether one sensor more never gains more than it would have before: submodular.

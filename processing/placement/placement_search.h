@@ -37,9 +37,10 @@ inline constexpr std::string_view placement_method_words[] = {"auto", "swap", "e
 
 struct PlacementSettings {
   PlacementMethod method = PlacementMethod::automatic;
-  int starts = 10;         ///< drawn sets that are improved by swaps too, beside the greedy one
-  std::uint64_t seed = 1;  ///< of these
-  double most_sets = 2e5;  ///< that `automatic` looks at one by one
+  int starts = 10;          ///< drawn sets that are improved by swaps too, beside the greedy one
+  std::uint64_t seed = 1;   ///< of these
+  double most_sets = 2e5;   ///< that `automatic` looks at one by one …
+  double most_work = 3e10;  ///< … and numbers of maps that it looks at for that: a minute
 };
 
 /// The best set that was found, and how good a better one could be.

@@ -166,9 +166,10 @@ TEST(PlacementSearch, IsTheBestOfAllSetsOnSmallMaps) {
       loosest = std::max(loosest, found.upper_bound - truth.best);
       // Nemhauser, Wolsey & Fisher, Math. Program. 14, 265, 1978: 1 − 1/e of a cardinality, and
       // half of a matroid.
-      if (!kind.pairs && kind.at_least == 1)
+      if (!kind.pairs && kind.at_least == 1) {
         ASSERT_GE(found.greedy_value.back(),
                   (kind.options == 1 ? 1.0 - std::exp(-1.0) : 0.5) * truth.best);
+      }
     }
     RecordProperty(std::string(kind.name) + ": fields", int(fields));
     std::printf(

@@ -79,7 +79,9 @@ TEST(ErrorEllipse, HoldsTheNextError) {
       held_if_known += distance <= known / squared ? 1 : 0;
     }
     EXPECT_NEAR(held / double(sets), 0.95, 5.0 * 0.00154) << count;
-    if (count <= 12) EXPECT_LT(held_if_known / double(sets), 0.93) << count;
+    if (count <= 12) {
+      EXPECT_LT(held_if_known / double(sets), 0.93) << count;
+    }
   }
 }
 
@@ -120,7 +122,9 @@ TEST(ErrorEllipse, IntervalsHoldTheTruth) {
       EXPECT_GT(held / double(sets), low) << heavy;
       EXPECT_LT(held / double(sets), 0.97) << heavy;
     }
-    if (heavy) EXPECT_LT(naive / double(sets), 0.85);
+    if (heavy) {
+      EXPECT_LT(naive / double(sets), 0.85);
+    }
   }
 }
 
