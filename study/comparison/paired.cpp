@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "study/plan/no_value.h"
+#include "study/summary/clustered_mean.h"
 
 namespace asdic::detail::study {
 namespace {
@@ -50,7 +51,7 @@ PairedDifference difference_of_means(const Moments& differences, double confiden
   const double mean = differences.mean(), n = differences.count();
   if (n < 2.0) return {mean, {no_value, no_value}, no_value};
   const double error = differences.deviation() / std::sqrt(n);
-  const double half = student_two_sided(1.0 - confidence, n - 1.0) * error;
+  const double half = student(confidence, n - 1.0) * error;
   PairedDifference found{.value = mean, .interval = {mean - half, mean + half}};
   if (!(error > 0.0)) {
     found.p_value = mean == 0.0 ? 1.0 : 0.0;
@@ -60,19 +61,6 @@ PairedDifference difference_of_means(const Moments& differences, double confiden
   const double freedom = n - 1.0, t = mean / error;
   found.p_value = incomplete_beta(0.5 * freedom, 0.5, freedom / (freedom + t * t));
   return found;
-}
-
-double student_two_sided(double probability, double freedom) {
-  double low = 0.0, high = 1.0;
-  const auto exceeds = [&](double t) {
-    return incomplete_beta(0.5 * freedom, 0.5, freedom / (freedom + t * t)) > probability;
-  };
-  while (exceeds(high) && high < 1e150) high *= 2.0;
-  for (int i = 0; i < 80; ++i) {
-    const double middle = 0.5 * (low + high);
-    (exceeds(middle) ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
 }
 
 }  // namespace asdic::detail::study

@@ -25,7 +25,4 @@ struct PairedDifference {
 /// second less the first, of each pair
 [[nodiscard]] PairedDifference difference_of_means(const Moments& differences, double confidence);
 
-/// t that Student's law of these degrees of freedom exceeds, in magnitude, with this probability.
-[[nodiscard]] double student_two_sided(double probability, double freedom);
-
 }  // namespace asdic::detail::study

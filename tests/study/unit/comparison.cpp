@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "study/comparison/paired.h"
 #include "study/sampling/law.h"
+#include "study/summary/clustered_mean.h"
 
 namespace asdic::detail::study {
 namespace {
@@ -97,12 +98,12 @@ TEST(PairedProportions, HoldTheDifferenceAsOftenAsTheySay) {
 // Student's law of 1 and 2 degrees of freedom is known in closed form.
 TEST(Student, HasItsClosedForms) {
   for (const double p : {0.5, 0.1, 0.05, 1e-3}) {
-    EXPECT_NEAR(student_two_sided(p, 1.0), std::tan(0.5 * M_PI * (1.0 - p)),
+    EXPECT_NEAR(student(1.0 - p, 1.0), std::tan(0.5 * M_PI * (1.0 - p)),
                 1e-9 * std::tan(0.5 * M_PI * (1.0 - p)));
     const double a = 1.0 - p;  // P(|t| < T) = T/√(2 + T²)
-    EXPECT_NEAR(student_two_sided(p, 2.0), a * std::sqrt(2.0 / (1.0 - a * a)), 1e-8);
+    EXPECT_NEAR(student(1.0 - p, 2.0), a * std::sqrt(2.0 / (1.0 - a * a)), 1e-8);
   }
-  EXPECT_NEAR(student_two_sided(0.05, 1e7), two_sided(0.95), 1e-6);
+  EXPECT_NEAR(student(0.95, 1e7), two_sided(0.95), 1e-6);
 }
 
 TEST(PairedMeans, HoldTheDifferenceAsOftenAsTheySay) {
