@@ -380,6 +380,36 @@ TEST(Adapt, WritesAStudyThatRepeatsItself) {
   EXPECT_NE(identity(plain), identity(read(folder, drawn_study + event + "share = 0.2\n")));
 }
 
+// Inputs that depend on one another, by a copula and by a choice: scores are drawn before either.
+// Their difference is normal about 10 with the deviation 3, as ρ is 1/2. The event lies 4.75 of
+// them beyond in winter, which has a quarter: ¼·10⁻⁶.
+TEST(Adapt, InputsMayDependOnOneAnother) {
+  const support::TemporaryDirectory folder;
+  const Study plain =
+      read(folder,
+           "[study]\nrealisations = 1000\nseed = 3\n[vary]\n"
+           "season = { law = \"categorical\", values = [\"winter\", \"summer\"], "
+           "weights = [1, 3], keys = [] }\n"
+           "\"target.0.strength_db\" = { law = \"normal\", mean = 10.0, deviation = "
+           "3.0 }\nmore = { law = \"normal\", mean = 0.0, deviation = 3.0, keys = [] "
+           "}\n[vary.shift]\ngiven = \"season\"\nkeys = []\nlaws.winter = { law = "
+           "\"uniform\", low = 0.0, high = 1e-9 }\nlaws.summer = { law = \"uniform\", "
+           "low = 20.0, high = 20.1 }\n[correlation]\ninputs = [\"strength_db\", "
+           "\"more\"]\nmatrix = [[1.0, 0.5], [0.5, 1.0]]\n[measure]\necho_level = "
+           "true\n[rare]\nevent = \"strength_db - more - shift > 24.26027\"\n"
+           "rows_per_level = 200\n");
+  std::ofstream(folder.path() / "found.toml") << with_components(plain, adapt(plain, {}), "");
+  const Study found = read_study(folder.path() / "found.toml");
+  const Realiser realiser(found);
+  RunningEstimate estimate(found);
+  for (std::uint64_t i = 0; i < found.realisations; ++i) estimate.add(realiser.realise(i));
+  const std::optional<Estimate> p = estimate.estimate();
+  ASSERT_TRUE(p);
+  EXPECT_LT(p->low, 0.25e-6);
+  EXPECT_GT(p->high, 0.25e-6);
+  EXPECT_LT(p->high - p->low, 0.3e-6);
+}
+
 std::string fault_of(const std::string& tables, bool adapted = false) {
   const support::TemporaryDirectory folder;
   try {

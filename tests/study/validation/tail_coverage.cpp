@@ -106,7 +106,9 @@ TEST(TailCoverage, OfManySets) {
     EXPECT_GE(tail, 359) << one.shape;
     EXPECT_GE(shape, 359) << one.shape;
     // The Pareto law alone lies too high where cells are spiky.
-    if (one.shape < 1.0) EXPECT_LT(by_pareto, 359) << one.cells;
+    if (one.shape < 1.0) {
+      EXPECT_LT(by_pareto, 359) << one.cells;
+    }
   }
 }
 
