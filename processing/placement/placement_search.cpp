@@ -122,8 +122,9 @@ class Search {
     if (all) look_at_all();
     choice.proved = all;
     best_.tell(choice);
-    choice.upper_bound = all ? choice.value : std::min(1.0, std::max(bound_, choice.value));
-    if (!all && choice.upper_bound <= choice.value + rounding) choice.proved = true;
+    choice.upper_bound = all ? choice.value : std::min(1.0, bound_);
+    constexpr double sums = 1e-9;  // that are added up in other orders
+    if (!all && choice.upper_bound <= choice.value + sums) choice.proved = true;
     return choice;
   }
 

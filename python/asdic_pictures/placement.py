@@ -223,7 +223,7 @@ def answer(found: Placement) -> str:
 
 
 def draw_plan(found: Placement, layer: int, axes=None):
-    fig, axes = style.figure(PICTURES["placement"], float(np.clip(1.9 + height(found, 7.6), 4.4, 9.5)), axes)
+    fig, axes = style.figure(PICTURES["placement"], float(np.clip(1.9 + height(found, 7.6), 4.4, 12.5)), axes)
     values = found.detection[layer]
     where = grid(found)
     handles = []

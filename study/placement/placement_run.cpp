@@ -90,7 +90,6 @@ class Placing {
   Placement run() {
     begin();
     PlacementProblem& problem = made_.problem;
-    const std::size_t draws = plan_.draws + plan_.judging;
     std::optional<Sampler> sampler;
     if (!plan_.inputs.variables.empty()) sampler.emplace(plan_.inputs);
     const std::size_t maps = count() * (problem.pairs ? count() : 1);
@@ -104,7 +103,7 @@ class Placing {
     std::vector<std::size_t> all(count());
     for (std::size_t c = 0; c < all.size(); ++c) all[c] = c;
     to_do_ = double(maps * plan_.draws);
-    for (std::size_t d = 0; d < plan_.draws; ++d) make_draw(sampler, d, d, all);
+    make_draws(sampler, 0, plan_.draws, all);
     made_.choice = choose_sensors(problem, plan_.search, [&](double) { return tell(0.0); });
     see_alone();
     if (plan_.judging > 0) {
@@ -118,8 +117,7 @@ class Placing {
           if (problem.pairs) problem.maps[a * count() + b].resize(plan_.judging * size());
       }
       problem.draws = plan_.judging;
-      for (std::size_t d = plan_.draws; d < draws; ++d)
-        make_draw(sampler, d, d - plan_.draws, chosen);
+      make_draws(sampler, plan_.draws, plan_.judging, chosen);
     }
     judge();
     problem.maps.clear();
@@ -277,25 +275,32 @@ class Placing {
                        " beyond the map of the sea floor do not count");
   }
 
-  /// All maps of one draw. \param wanted  candidates   \param slot  where the draw is kept
-  void make_draw(const std::optional<Sampler>& sampler, std::size_t index, std::size_t slot,
-                 const std::vector<std::size_t>& wanted) {
-    std::vector<DrawnOption> options;
-    for (std::size_t o = 0; o < plan_.options.size(); ++o)
-      options.push_back(drawn(o, sampler ? &*sampler : nullptr, index));
-    known_.clear();
-    for (const std::size_t a : wanted) {
-      if (!made_.problem.pairs) {
-        fill(map_of(options, a, a), a, a, index, slot, made_.problem.maps[a]);
-        if (!tell(1.0)) throw Interrupted();
-        continue;
-      }
-      for (const std::size_t b : wanted) {
-        const auto& candidates = made_.problem.candidates;
-        if (candidates[a].option == candidates[b].option || plan_.across_options)
-          fill(map_of(options, a, b), a, b, index, slot, made_.problem.maps[a * count() + b]);
-        if (!tell(1.0)) throw Interrupted();
-      }
+  /// All maps of some draws. \param wanted  candidates   \param first  of the draws, that is kept
+  /// in slot 0
+  void make_draws(const std::optional<Sampler>& sampler, std::size_t first, std::size_t draws,
+                  const std::vector<std::size_t>& wanted) {
+    // Where no input is drawn, all draws are of the same map.
+    const std::size_t each = sampler ? 1 : draws;
+    for (std::size_t d = 0; d < draws; d += each) {
+      std::vector<DrawnOption> options;
+      for (std::size_t o = 0; o < plan_.options.size(); ++o)
+        options.push_back(drawn(o, sampler ? &*sampler : nullptr, first + d));
+      known_.clear();
+      const auto make = [&](std::size_t a, std::size_t b, std::vector<float>& values) {
+        const std::shared_ptr<const SensorMap> map = map_of(options, a, b);
+        for (std::size_t slot = d; slot < d + each; ++slot)
+          fill(*map, a, b, first + slot, slot, values);
+      };
+      for (const std::size_t a : wanted)
+        for (const std::size_t b : wanted) {
+          const auto& candidates = made_.problem.candidates;
+          if (!made_.problem.pairs
+                  ? a != b
+                  : candidates[a].option != candidates[b].option && !plan_.across_options)
+            continue;
+          make(a, b, made_.problem.maps[made_.problem.pairs ? a * count() + b : a]);
+          if (!tell(double(each))) throw Interrupted();
+        }
     }
   }
 
@@ -347,11 +352,11 @@ class Placing {
   }
 
   /// What of a map is at the plan's cells, with what it is off by.
-  void fill(const std::shared_ptr<const SensorMap>& map, std::size_t a, std::size_t b,
-            std::size_t index, std::size_t slot, std::vector<float>& values) {
-    const Coverage& found = map->found;
+  void fill(const SensorMap& map, std::size_t a, std::size_t b, std::size_t index, std::size_t slot,
+            std::vector<float>& values) {
+    const Coverage& found = map.found;
     const std::size_t cells = plan_.cells.size();
-    const Vec2 middle = place_of(b) + map->offset;
+    const Vec2 middle = place_of(b) + map.offset;
     const std::uint64_t id = (std::uint64_t{a} * count() + b) << 32;
     double of_map = 0.0;
     if (plan_.map_error == MapError::maps)
@@ -375,7 +380,7 @@ class Placing {
                   ? of_map
                   : RandomStream(plan_.inputs.seed, Draw::study_noise, std::uint32_t(index), id | x)
                         .normal();
-          p = (*map->curve)(double(layer.signal_excess_db[cell]) + uncertainty * z);
+          p = (*map.curve)(double(layer.signal_excess_db[cell]) + uncertainty * z);
         }
         to[x] = std::isfinite(p) ? float(std::clamp(p, 0.0, 1.0)) : 0.0F;
       }

@@ -180,6 +180,32 @@ TEST(PlacementSearch, IsTheBestOfAllSetsOnSmallMaps) {
   }
 }
 
+// Maps that share no cell: gains add up, and the bound is the best itself, of pulses too.
+TEST(PlacementSearch, TheBoundIsTightWhereMapsDoNotMeet) {
+  for (const bool pairs : {false, true})
+    for (const std::size_t at_least : {std::size_t{1}, std::size_t{2}}) {
+      if (pairs && at_least > 1) continue;
+      PlacementProblem problem{.pairs = pairs, .sensors = 3, .at_least = at_least, .maps = {}};
+      constexpr std::size_t count = 10;
+      for (std::size_t c = 0; c < count; ++c) {
+        problem.candidates.push_back({.place = c / 2, .option = c % 2});
+        problem.weight.push_back(1.0 / double(count));
+      }
+      for (std::size_t a = 0; a < count; ++a)
+        for (std::size_t b = 0; b < (pairs ? count : 1); ++b) {
+          std::vector<float> map(count, 0.0F);
+          if (!pairs || a == b) map[a] = 0.05F * float(a + 1);
+          problem.maps.push_back(map);
+        }
+      const PlacementChoice found = choose_sensors(problem, {.method = PlacementMethod::swap});
+      // The better option of the three best places: 0.5, 0.4 and 0.3 of a tenth each.
+      const double best = at_least == 1 ? 0.12 : 0.0;
+      EXPECT_NEAR(found.value, best, 1e-8);
+      EXPECT_NEAR(found.upper_bound, at_least == 1 ? best : 0.06, 1e-8);  // Markov's: half of it
+      EXPECT_EQ(found.proved, at_least == 1);
+    }
+}
+
 // A case made so that greedy choice fails: the middle disc is the largest, the two others together
 // see everything. One swap cannot leave the middle alone either way; here it can.
 TEST(PlacementSearch, SwapsMendWhatGreedBegan) {

@@ -210,6 +210,27 @@ TEST_F(PlacementOfSensors, ChoosesThePulse) {
   EXPECT_EQ(found.sets, 10.0 * 4.0);
 }
 
+// Two options that are alike: an array hears pings of its own alone, unless all are to be heard.
+TEST_F(PlacementOfSensors, ArraysHearTheirOwnOption) {
+  const auto found = [&](const std::string& across) {
+    return place_sensors(
+        read("scenario = \"buoy.toml\"\nsensors = 2\nmultistatic = true\n" + across +
+                 "[[placement.option]]\nname = \"a\"\n[[placement.option]]\nname = \"b\"\n",
+             "[placement.places]\npoints = [[-500.0, 0.0], [1000.0, 0.0]]\n[placement.cells]\n"
+             "east = [-4000.0, 4000.0]\nnorth = [-4000.0, 4000.0]\nstep = 1000.0\n"));
+  };
+  const Placement own = found(""), all = found("across_options = true\n");
+  const auto option = [](const Placement& of, const SensorSet& set, std::size_t m) {
+    return of.problem.candidates[set[m]].option;
+  };
+  EXPECT_EQ(option(own, own.choice.best, 0), option(own, own.choice.best, 1));
+  EXPECT_EQ(own.choice.value, all.choice.value);
+  EXPECT_EQ(all.choice.runner_value, all.choice.value);  // whichever options
+  double mixed = 0.0;  // of the four sets the two that hear nothing of one another
+  for (const double share : own.alone) mixed = std::max(mixed, share);
+  EXPECT_GT(own.choice.value, mixed);
+}
+
 // The draws that choose are quiet, those that judge are not: what is told is theirs.
 TEST_F(PlacementOfSensors, FreshDrawsJudge) {
   const Placement found = place_sensors(
@@ -290,6 +311,9 @@ TEST_F(PlacementOfSensors, TellsWhatIsWrong) {
               "[placement.places]\npoints = [[0.0, 0.0], [0.0, 1.0]]\n[placement.cells]\n"
               "east = [0.0, 2500.0]\nnorth = [0.0, 2000.0]\nstep = 1000.0\n"),
       "plan.toml:9: placement.cells.east: found 2500 m, expected whole cells of step = 1000 m");
+  EXPECT_EQ(
+      message("scenario = \"buoy.toml\"\nsensors = 2\nacross_options = true\n"),
+      "plan.toml:6: placement.across_options: found true, expected multistatic = true beside it");
   EXPECT_EQ(message("scenario = \"buoy.toml\"\nsensors = 6\n"),
             "plan.toml: placement.places: found 5 places that 5 candidates leave (the others are "
             "too shallow or off the map), expected at least one for each of the 6 sensors");
