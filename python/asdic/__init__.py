@@ -19,7 +19,7 @@ from .pages import page
 from .places import Ocean, ocean
 from .processing import Processed, process
 from .scenario import Scenario, settings
-from .studies import Measure, StudyResult, read_study, study
+from .studies import Measure, StudyResult, read_study, study, to_parquet
 from .told import AsdicWarning
 
 __version__ = version()
@@ -34,4 +34,4 @@ def __getattr__(name: str):
 
 __all__ = ["Arrivals", "AsdicWarning", "Channel", "InputError", "Measure", "Ocean", "Processed",
            "RunError", "Scenario", "Stopped", "StudyResult", "area", "bellhop", "build", "group", "ocean",
-           "open", "page", "process", "read_study", "settings", "study", "version"]
+           "open", "page", "process", "read_study", "settings", "study", "to_parquet", "version"]
