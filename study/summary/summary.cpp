@@ -154,11 +154,13 @@ SummaryTable statistics_table(const Study& study, const Table& table) {
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     ClusteredMean moments(clusters);
     std::vector<double> sorted;
+    sorted.reserve(table.index.size());
     for (std::size_t row = 0; row < table.index.size(); ++row)
       if (counts(table, row, c)) {
         moments.add(table.index[row], table.values[c][row]);
         sorted.push_back(table.values[c][row]);
       }
+    table.values[c].rest();
     std::sort(sorted.begin(), sorted.end());
     const double none = std::nan("");
     const Interval interval = is_proportion(table.columns[c])

@@ -6,6 +6,7 @@
 #include "study/measures/cell_counts.h"
 #include "study/measures/realisation.h"
 #include "study/summary/clustered_mean.h"
+#include "study/summary/column_values.h"
 #include "study/summary/law_tables.h"
 
 namespace asdic::detail::study {
@@ -13,10 +14,10 @@ namespace asdic::detail::study {
 /// Rows of a study, by column; sorted by index.
 struct Table {
   std::vector<Column> columns;
-  std::vector<std::uint64_t> index;         ///< [rows]
-  std::vector<std::uint8_t> valid;          ///< [rows]
-  std::vector<std::vector<double>> values;  ///< [columns][rows]
-  CellSums cells{};                         ///< of all these rows, where cells are counted
+  std::vector<std::uint64_t> index;  ///< [rows]
+  std::vector<std::uint8_t> valid;   ///< [rows]
+  std::vector<ColumnValues> values;  ///< [columns][rows]
+  CellSums cells{};                  ///< of all these rows, where cells are counted
 };
 
 /// A table of the summary: columns of equal length ("pd_by_range": centre, count, pd, low, high).

@@ -81,6 +81,8 @@ std::vector<SummaryTable> tables_by(const Study& study, const std::vector<Summar
           {known, rang / known, found.low, found.high, study.measure.false_alarm_probability()});
     }
     all.push_back(std::move(made));
+    table.values[c].rest();
+    if (alarms) table.values[*alarms].rest();
   }
   if (others.empty()) return all;
   SummaryTable made = cells.table("means" + suffix, "Means" + along);
@@ -98,6 +100,7 @@ std::vector<SummaryTable> tables_by(const Study& study, const std::vector<Summar
       ClusteredMean moments(clusters);
       for (const std::size_t row : cells.rows(cell))
         if (counts(table, row, c)) moments.add(table.index[row], table.values[c][row]);
+      table.values[c].rest();
       const Interval interval = moments.mean_interval(plan.confidence);
       put(made, {moments.mean(), interval.low, interval.high});
     }
