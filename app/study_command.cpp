@@ -11,6 +11,7 @@
 #include "app/pictures.h"
 #include "app/study_comparison.h"
 #include "app/study_options.h"
+#include "app/study_pilot.h"
 #include "app/study_progress.h"
 #include "app/warn.h"
 #include "core/error.h"
@@ -110,6 +111,13 @@ void add_study_command(Program& program) {
                         "gone; default: 120 s")
             .type_name("SECONDS")
             .check(above_zero());
+        command
+            .add_option("--pilot", options->pilot,
+                        "make so many realisations (16 are a good number), write nothing, and say "
+                        "what the whole will cost in time, memory and disk, where the time goes "
+                        "and what to turn")
+            .type_name("ROWS")
+            .check(whole_number(1, 100000, "a number of realisations"));
         command.add_flag("--assemble", options->assemble,
                          "make no realisations: write a file of those that are there");
         command.footer(
@@ -117,6 +125,7 @@ void add_study_command(Program& program) {
             "was.\n"
             "Example:  asdic study scenarios/studies/detection_range.toml -o detection_range.h5");
         command.runs([options] {
+          if (options->pilot) return try_study(*options);
           return options->compare ? compare_studies(*options, study_run) : study_run(*options);
         });
       });

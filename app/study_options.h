@@ -19,6 +19,7 @@ struct StudyOptions {
   std::vector<std::string> until;
   bool fresh = false, force = false, assemble = false, retry = false, quiet = false,
        compare = false, join = false, report = false;
+  std::optional<int> pilot;       ///< rows to try
   std::optional<double> silence;  ///< of workers and ranks [s]
 };
 
