@@ -12,6 +12,7 @@
 #include "app/study_adapt.h"
 #include "app/study_comparison.h"
 #include "app/study_options.h"
+#include "app/study_pilot.h"
 #include "app/study_progress.h"
 #include "app/warn.h"
 #include "core/error.h"
@@ -122,6 +123,13 @@ void add_study_command(Program& program) {
                         "make no study: find, level by level, from where inputs reach the event of "
                         "[rare], and write the study with it, to be made by the same command")
             .type_name("FILE.toml");
+        command
+            .add_option("--pilot", options->pilot,
+                        "make so many realisations (16 are a good number), write nothing, and say "
+                        "what the whole will cost in time, memory and disk, where the time goes "
+                        "and what to turn")
+            .type_name("ROWS")
+            .check(whole_number(1, 100000, "a number of realisations"));
         command.add_flag("--assemble", options->assemble,
                          "make no realisations: write a file of those that are there");
         command.footer(
@@ -130,6 +138,7 @@ void add_study_command(Program& program) {
             "Example:  asdic study scenarios/studies/detection_range.toml -o detection_range.h5");
         command.runs([options] {
           if (!options->adapt.empty()) return adapt_study(*options);
+          if (options->pilot) return try_study(*options);
           return options->compare ? compare_studies(*options, study_run) : study_run(*options);
         });
       });

@@ -21,6 +21,7 @@ struct StudyOptions {
        compare = false, join = false, report = false;
   bool pays_no_heed = false;      ///< to study.until: a study of a comparison …
   bool brief = false;             ///< … which says nothing of one round
+  std::optional<int> pilot;       ///< rows to try
   std::optional<double> silence;  ///< of workers and ranks [s]
 };
 

@@ -25,7 +25,8 @@ StudyResult shown(const detail::study::StudyFile& file) {
     if (column.role == detail::study::Column::Role::reuse) continue;  // the file's bookkeeping
     result.columns.push_back(column.name);
     result.units.push_back(column.unit == "1" ? "" : column.unit);
-    result.values.push_back(std::move(table.values[i]));
+    result.values.emplace_back(table.values[i].begin(), table.values[i].end());
+    table.values[i].clear();
   }
   detail::study::Table own = file.own();
   for (std::size_t i = 0; i < own.columns.size(); ++i) {
@@ -42,7 +43,7 @@ void answer(const detail::study::Study& study, const detail::study::Table& table
   detail::study::RunningEstimate estimate(study);
   for (std::size_t i = 0; i < table.index.size(); ++i) {
     detail::study::Row row{.index = table.index[i], .valid = table.valid[i] != 0};
-    for (const std::vector<double>& column : table.values) row.values.push_back(column[i]);
+    for (const detail::study::ColumnValues& column : table.values) row.values.push_back(column[i]);
     estimate.add(row);
   }
   const std::optional<detail::study::Estimate> found = estimate.estimate();

@@ -15,7 +15,7 @@ ORDER = ["core", "raytrace", "reverb", "sonar", "processing", "io", "study", "se
 PUBLIC = "asdic"  # include/asdic
 ROOMS = {  # in the folders named here every file lies in a room, and a room includes itself and those before it
     "io": ["files", "isolated", "text", "hdf5", "wav", "mat", "settings", "climatology", "scenario", "bellhop", "compare", "ping", "result", "processing"],
-    "study": ["expression", "sampling", "plan", "measures", "summary", "comparison", "reader", "placement", "journal", "runs", "crew", "mpi"],
+    "study": ["expression", "sampling", "plan", "measures", "summary", "comparison", "reader", "placement", "pilot", "journal", "runs", "crew", "mpi"],
     "raytrace": ["math", "parallel", "ocean", "area", "cases", "layered", "tracing", "paths", "beams", "waves", "volume", "places", "bellhop_emulation", "runs", "warnings", ""],
     "reverb": ["scattering", "pairs", "fields", "power"],
     "sonar": ["signal", "noise_spectra", "scenario", "paths", "noise", "reverberation", "synthesis", "echoes", "warnings", "ping", "channel"],

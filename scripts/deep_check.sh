@@ -142,6 +142,23 @@ if [ -x build/ci/tests/property_study ]; then
   fi
 fi
 
+# Studies of very many rows in bounded memory; Slurm itself on this machine, where it can be had.
+if [ -x build/ci/tests/property_study ]; then
+  if said=$(ASDIC_SCALE=3000000 build/ci/tests/property_study --gtest_filter='Scale.*' 2>&1); then
+    verdict study-scale good "3000000 rows in bounded memory"
+  else
+    verdict study-scale FAILED "$(grep -m 1 Failure <<<"$said")"
+  fi
+fi
+apt-get install -y --no-install-recommends slurm-wlm munge >/dev/null 2>&1 || true
+status=0
+said=$(tests/study/deep/slurm.sh 2>&1) || status=$?
+case $status in
+  0) verdict slurm good "$(tail -n 1 <<<"$said")" ;;
+  77) verdict slurm good "$(tail -n 1 <<<"$said")" ;;
+  *) verdict slurm FAILED "$(grep -m 1 slurm.sh <<<"$said")" ;;
+esac
+
 # 10 000 served updates and pings: none lost, no more memory after them.
 cd "$root"
 if said=$(/usr/bin/python3 tests/serve/validation/serve.py "${ASDIC_SERVED_PINGS:-10000}" 2>&1); then

@@ -20,7 +20,7 @@ from .placements import place
 from .places import Ocean, ocean
 from .processing import Processed, process
 from .scenario import Scenario, settings
-from .studies import Measure, StudyResult, read_study, study
+from .studies import Measure, StudyResult, read_study, study, to_parquet
 from .told import AsdicWarning
 
 __version__ = version()
@@ -35,4 +35,5 @@ def __getattr__(name: str):
 
 __all__ = ["Arrivals", "AsdicWarning", "Channel", "InputError", "Measure", "Ocean", "Processed",
            "RunError", "Scenario", "Stopped", "StudyResult", "area", "bellhop", "build", "group", "ocean",
-           "open", "page", "place", "process", "read_study", "settings", "study", "version"]
+           "open", "page", "place", "process", "read_study", "settings", "study", "to_parquet",
+           "version"]

@@ -173,6 +173,32 @@ def _called(function):
     return of
 
 
+def to_parquet(file, output, *, rows: int = 1 << 17) -> int:
+    """Writes the table of a study's file as Parquet, for tools that read columns (Arrow, Polars,
+    DuckDB, Spark). Needs pyarrow and h5py.
+
+    Columns are ``index``, ``valid``, then what varied and what was measured, as in the file.
+    Labels are texts (a dictionary). Unit, meaning and role of a column are metadata of its field
+    (``unit``, ``meaning``, ``role``), title, identity and seed of the study those of the table.
+    It is read and written in blocks, one row group each: memory does not grow with the rows.
+
+    Parameters
+    ----------
+    file : path
+        Of `asdic study` or `asdic merge`.
+    output : path
+        Must not be there.
+    rows : int
+        Of a row group.
+
+    Returns how many rows were written. Raises InputError, OSError; ModuleNotFoundError without
+    pyarrow.
+    """
+    from .parquet import write
+
+    return write(os.fspath(file), os.fspath(output), rows)
+
+
 def read_study(file) -> StudyResult:
     """The table of a study's file."""
     return _shown(_core.read_study(os.fspath(file)))

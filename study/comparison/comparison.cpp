@@ -48,7 +48,7 @@ Table only_rows(const Table& table, const std::vector<std::uint64_t>& index) {
   return kept;
 }
 
-bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+bool same_bits(const ColumnValues& a, const ColumnValues& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) {
     return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
   });
@@ -79,8 +79,8 @@ class Pairing {
   }
 
   /// Answers of one measure. \return [studies][rows]
-  [[nodiscard]] std::vector<const std::vector<double>*> answers(const std::string& measure) const {
-    std::vector<const std::vector<double>*> all;
+  [[nodiscard]] std::vector<const ColumnValues*> answers(const std::string& measure) const {
+    std::vector<const ColumnValues*> all;
     all.reserve(tables_.size());
     for (const Table& table : tables_) all.push_back(&values(table, measure));
     return all;
@@ -97,7 +97,7 @@ class Pairing {
   std::vector<std::string> inputs, unlike, measures;
 
  private:
-  static const std::vector<double>& values(const Table& table, const std::string& column) {
+  static const ColumnValues& values(const Table& table, const std::string& column) {
     return table.values[column_of(table, column)];
   }
 
@@ -161,8 +161,8 @@ class Differences {
   }
 
  private:
-  [[nodiscard]] PairedDifference difference(bool proportion, const std::vector<double>& first,
-                                            const std::vector<double>& second,
+  [[nodiscard]] PairedDifference difference(bool proportion, const ColumnValues& first,
+                                            const ColumnValues& second,
                                             const std::vector<std::size_t>& rows) const {
     if (!proportion) {
       Moments moments;

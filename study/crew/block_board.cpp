@@ -12,6 +12,7 @@
 #include <fstream>
 #include <random>
 #include <system_error>
+#include <utility>
 
 #include "core/error.h"
 
@@ -69,8 +70,9 @@ std::string worker_name(int worker) { return "worker-" + std::to_string(worker);
 fs::path crew_of(const fs::path& output) { return output.string() + ".crew"; }
 
 std::uint64_t BlockBoard::block_size(std::uint64_t rows) noexcept {
-  constexpr std::uint64_t most = 4096;
-  return std::max<std::uint64_t>(1, (rows + most - 1) / most);
+  constexpr std::uint64_t few = 4096, most = 65536, usual = 64;  // blocks; rows of one
+  const std::uint64_t blocks = std::clamp(rows / usual, few, most);
+  return std::max<std::uint64_t>(1, (rows + blocks - 1) / blocks);
 }
 
 BlockBoard::BlockBoard(fs::path folder, const std::string& identity, IndexRange range,
@@ -90,12 +92,30 @@ BlockBoard::BlockBoard(fs::path folder, const std::string& identity, IndexRange 
                         .expected = "those of this one (" + study +
                                     "); another -o, or remove the folder once nobody works there"});
   blocks_ = (range_.size() + size_ - 1) / size_;
-  for (worker_ = 1; !make(path(worker_name(worker_)), ""); ++worker_) {
-  }
+  // The next number; where many come at once, a step at random that grows: no row of tries that is
+  // as long as they are many.
+  worker_ = 1 + workers_there();
+  std::minstd_rand random(static_cast<unsigned>(::getpid()) ^
+                          static_cast<unsigned>(Clock::now().time_since_epoch().count()));
+  for (unsigned step = 1; !make(path(worker_name(worker_)), ""); step = std::min(2 * step, 4096U))
+    worker_ += static_cast<int>(1 + random() % step);
   // Evenly spread, however many come: multiples of the golden ratio.
   next_ = static_cast<std::uint64_t>(static_cast<double>(blocks_) *
                                      std::fmod(0.6180339887 * (worker_ - 1), 1.0));
   look();
+}
+
+int BlockBoard::workers_there() const {
+  int greatest = 0;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder_, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (!name.starts_with("worker-")) continue;
+    if (const auto number = number_of(std::string_view(name).substr(7)))
+      greatest = std::max(greatest, static_cast<int>(*number));
+  }
+  return greatest;
 }
 
 BlockBoard::~BlockBoard() {
@@ -173,21 +193,34 @@ std::optional<BlockBoard::Block> BlockBoard::take() {
     next_ = (block + 1) % blocks_;
     return Block{.number = block, .range = range_of(block), .before = before};
   };
-  // Workers begin at places of their own, and go round.
-  for (int round = 0; round < 2; ++round) {
-    for (std::uint64_t k = 0; k < blocks_; ++k) {
-      const std::uint64_t block = (next_ + k) % blocks_;
-      if (!open(block)) continue;
-      if (make(path(name_of(block, "taken")), std::to_string(worker_))) {
-        std::error_code error;
-        if (!fs::exists(path(name_of(block, "done")), error)) return taken(block, std::nullopt);
-        ::unlink(path(name_of(block, "taken")).c_str());  // it was done meanwhile
-        done_.insert(block);
-        continue;
-      }
-      taken_.insert(block);
+  const auto next_open = [&]() -> std::optional<std::uint64_t> {
+    for (std::uint64_t k = 0; k < blocks_; ++k)
+      if (const std::uint64_t block = (next_ + k) % blocks_; open(block)) return block;
+    return std::nullopt;
+  };
+  // Workers begin at places of their own. Where one meets what others have taken, what it has last
+  // seen is old: it looks anew, and goes on somewhere else. So few tries are in vain, however many
+  // workers and blocks there are.
+  static thread_local std::minstd_rand chance(std::random_device{}());
+  bool looked = false;
+  while (true) {
+    const std::optional<std::uint64_t> block = next_open();
+    if (!block && std::exchange(looked, true)) break;
+    if (!block) {
+      look();
+      continue;
+    }
+    std::error_code error;
+    const auto exists = [&](const char* what) {
+      return fs::exists(path(name_of(*block, what)), error);
+    };
+    if (!exists("taken") && make(path(name_of(*block, "taken")), std::to_string(worker_))) {
+      if (!exists("done")) return taken(*block, std::nullopt);
+      ::unlink(path(name_of(*block, "taken")).c_str());  // it was done meanwhile
     }
     look();
+    taken_.insert(*block);
+    next_ = chance() % blocks_;
   }
   for (const std::uint64_t block : std::set<std::uint64_t>(taken_))
     if (!own_.contains(block) && !done_.contains(block))

@@ -63,7 +63,8 @@ class BlockBoard {
   [[nodiscard]] bool is_over() const;  ///< the folder is gone: the file is made
   void remove();                       ///< the folder and what it holds of this
 
-  /// Indices of a block: a few thousand blocks, whatever the study, so that a folder can hold them.
+  /// Indices of a block: 4096 blocks or, of long studies, of 64 rows each up to 65536 blocks, so
+  /// that a folder can hold them and ten thousand workers have some each.
   [[nodiscard]] static std::uint64_t block_size(std::uint64_t rows) noexcept;
 
  private:
@@ -71,6 +72,7 @@ class BlockBoard {
   [[nodiscard]] std::string name_of(std::uint64_t block, const char* what) const;
   [[nodiscard]] IndexRange range_of(std::uint64_t block) const noexcept;
   [[nodiscard]] bool is_gone(int worker);
+  [[nodiscard]] int workers_there() const;  ///< the greatest of their numbers
   void look();
   void free(std::uint64_t block) const;  // if it is this worker's
   /// A file that a worker holds is taken from one that is gone. \return the one before

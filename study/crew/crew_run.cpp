@@ -98,14 +98,17 @@ class Crew {
   void make_rows(StudyOutcome& outcome) {
     Journal journal(journal_of(run_.output, board_.worker()), work_.fingerprint);
     journal.begin(run_.session);
+    Seconds wait = pause();
     while (!run_.stop.stop_requested() && !board_.is_over()) {
       auto block = board_.take();
       if (!block) {
         if (board_.all_done()) break;
         tell(outcome);
-        std::this_thread::sleep_for(pause());
+        std::this_thread::sleep_for(wait);
+        wait = std::min(2.0 * wait, run_.silence / 8.0);  // each look lists the folder
         continue;
       }
+      wait = pause();
       while (block) block = make_blocks(*block, journal, outcome);
     }
     journal.close();

@@ -157,6 +157,8 @@ void Journal::rows(IndexRange range, bool pressure, const std::function<void(Row
     }
     take(std::move(row));
   }
+  get.reset();
+  impl_->database.release_memory();  // thousands of journals may be read in turn
 }
 
 void Journal::series(IndexRange range, const std::function<void(Row&&)>& take) const {

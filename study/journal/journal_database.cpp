@@ -129,6 +129,10 @@ void Journal::Impl::start() {
   insert_row.emplace(database, "REPLACE INTO row VALUES(?,?,?,?,?,?)");
   insert_series.emplace(database, "REPLACE INTO series VALUES(?,?,?,?,?)");
   insert_cells.emplace(database, "REPLACE INTO cells VALUES(?,?,NULL)");
+}
+
+/// Only a journal that rows come into needs somebody who commits them: thousands may be open.
+void Journal::Impl::begin_to_commit() {
   committer = std::jthread([this](const std::stop_token& over) {
     using Clock = std::chrono::steady_clock;
     auto last = Clock::now();
@@ -151,6 +155,7 @@ void Journal::Impl::start() {
 
 void Journal::Impl::append(const Row& row) {
   if (fault) std::rethrow_exception(fault);
+  if (!committer.joinable()) begin_to_commit();
   if (!pending) database.execute("BEGIN");
   pending = true;
   Row clean{.index = row.index,

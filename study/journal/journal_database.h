@@ -42,6 +42,7 @@ struct Journal::Impl {
   [[nodiscard]] std::size_t columns_of_rows();  ///< as its meta data say
   void check_rows();
   void start();
+  void begin_to_commit();
   void append(const Row& row);
   void commit();
   void close();

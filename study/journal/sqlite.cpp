@@ -49,6 +49,8 @@ void Database::close() {
   connection_ = nullptr;
 }
 
+void Database::release_memory() const noexcept { sqlite3_db_release_memory(connection_); }
+
 void Database::check(int code) const {
   if (code == SQLITE_OK || code == SQLITE_ROW || code == SQLITE_DONE) return;
   const std::string said =

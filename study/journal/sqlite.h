@@ -21,6 +21,8 @@ class Database {
 
   void execute(const std::string& sql);
   void close();
+  /// Gives the pages back that it has read.
+  void release_memory() const noexcept;
   /// Throws for a result code that is not one of success.
   void check(int code) const;
   [[nodiscard]] sqlite3* get() const noexcept { return connection_; }

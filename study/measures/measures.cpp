@@ -85,6 +85,20 @@ std::vector<std::uint8_t> counted_cells(const PingSimulator& simulator, const Pi
   return packed_counts(counts);
 }
 
+/// A ping's processor time by its stages, which the ping itself tells in wall time.
+void add_parts(const Timings& wall, double processor, RowCost& cost) {
+  const double rays = wall.rays + wall.patches;
+  const double all = wall.eigenrays + rays + wall.synthesis + wall.noise;
+  if (!(all > 0.0)) {
+    cost[Stage::target_paths] += processor;
+    return;
+  }
+  cost[Stage::target_paths] += processor * wall.eigenrays / all;
+  cost[Stage::sea_paths] += processor * rays / all;
+  cost[Stage::sound] += processor * wall.synthesis / all;
+  cost[Stage::noise] += processor * wall.noise / all;
+}
+
 /// One pass over the measures that are wanted.
 void walk(std::span<const AnyMeasure> measures, MeasuredPing ping, Collector& to) {
   const std::vector<Target>& targets = ping.scenario.targets;
@@ -114,9 +128,11 @@ std::vector<Column> measure_columns(const Study& study, const Scenario& scenario
 
 Measured measure(const Study& study, const PingSimulator& simulator,
                  std::span<const AnyMeasure> measures,
-                 const std::shared_ptr<SharedPropagation>& shared) {
+                 const std::shared_ptr<SharedPropagation>& shared, RowCost* cost) {
   const MeasurePlan& plan = study.measure;
+  CostClock clock(cost);
   Measured made{.record = received(simulator, plan)};
+  if (cost != nullptr) add_parts(made.record.timings, clock.lap(), *cost);
   std::vector<ExpectedAnswer> expected;
   if (plan.uses_matched_filter() &&
       plan.matched_filter.background == MatchedFilterPlan::Background::expected)
@@ -125,7 +141,9 @@ Measured measure(const Study& study, const PingSimulator& simulator,
       plan.matched_filter.background == MatchedFilterPlan::Background::summed)
     expected =
         summed_answers(simulator, made.record, plan.matched_filter, plan.array, bool(plan.cells));
+  clock.lap(Stage::draws);
   if (plan.cells) made.cells = counted_cells(simulator, made.record, plan, expected);
+  clock.lap(Stage::cells);
   Collector collector(made.values);
   walk(measures,
        {.plan = study.measure,
@@ -134,6 +152,7 @@ Measured measure(const Study& study, const PingSimulator& simulator,
         .record = &made.record,
         .expected = std::move(expected)},
        collector);
+  clock.lap(Stage::measures);
   return made;
 }
 

@@ -39,9 +39,11 @@ struct Measured {
   std::vector<std::uint8_t> cells{};  ///< packed_counts(), where cells are counted
 };
 /// \param simulator  of the realisation's scenario   \param shared  what draws of its background
-/// have in common with others   \throws InputError
+/// have in common with others   \param cost  gets what each stage took, where somebody asks
+/// \throws InputError
 [[nodiscard]] Measured measure(const Study& study, const PingSimulator& simulator,
                                std::span<const AnyMeasure> measures = all_measures,
-                               const std::shared_ptr<SharedPropagation>& shared = nullptr);
+                               const std::shared_ptr<SharedPropagation>& shared = nullptr,
+                               RowCost* cost = nullptr);
 
 }  // namespace asdic::detail::study

@@ -92,7 +92,7 @@ struct Realiser::Impl {
         budget(budget_of(study.scenario, MemoryBudget(processes))),
         memory(budget.bytes(), static_cast<std::size_t>(tbb::this_task_arena::max_concurrency())) {}
   [[nodiscard]] std::size_t inputs() const { return sampler.columns().size(); }
-  [[nodiscard]] Row make(std::uint64_t index, double bytes);
+  [[nodiscard]] Row make(std::uint64_t index, double bytes, RowCost* cost);
   /// What it drew, and why it has no measures.
   [[nodiscard]] Row skipped(std::uint64_t index, const Sampler::Drawn& draw,
                             const std::string& fault) const {
@@ -109,8 +109,7 @@ struct Realiser::Impl {
   MemoryBudget budget;  // of all rows in hand
   RowMemory memory;
   /// Bounded, so that memory stays flat: a target that moves never finds its paths again.
-  std::shared_ptr<SharedPropagation> shared =
-      std::make_shared<SharedPropagation>(std::size_t{64} << 20);
+  std::shared_ptr<SharedPropagation> shared = std::make_shared<SharedPropagation>(shared_bytes);
 };
 
 Realiser::Realiser(Study study, int processes)
@@ -119,9 +118,11 @@ Realiser::~Realiser() = default;
 
 const Study& Realiser::study() const noexcept { return impl_->study; }
 
-Row Realiser::realise(std::uint64_t index) const {
+Row Realiser::realise(std::uint64_t index, RowCost* cost) const {
   Row row;
-  impl_->memory.within([&](double bytes) { row = impl_->make(index, bytes); });
+  CostClock clock(cost);
+  impl_->memory.within([&](double bytes) { row = impl_->make(index, bytes, cost); });
+  if (cost != nullptr) cost->total = clock.lap();
   return row;
 }
 
@@ -130,7 +131,8 @@ Row Realiser::skipped(std::uint64_t index, const std::string& fault) const {
 }
 
 /// \param bytes  that it may take
-Row Realiser::Impl::make(std::uint64_t index, double bytes) {
+Row Realiser::Impl::make(std::uint64_t index, double bytes, RowCost* cost) {
+  CostClock clock(cost);
   const Sampler::Drawn draw = sampler.draw(index);
   Row row{.index = index, .values = draw.values};
   const auto fails = [&](const InputError& error) {
@@ -147,9 +149,12 @@ Row Realiser::Impl::make(std::uint64_t index, double bytes) {
     sampler.apply(draw, tree);
     Scenario scenario = scenario_of(tree, study.scenario_path);
     scenario.seed = seed_of(study, sampler.chance_of(index));
+    clock.lap(Stage::scenario);
     PingSimulator simulator(std::move(scenario), shared, budget.share(bytes, "a row's share"));
     simulator.receives_one_ping();
-    Measured measured = measure(study, simulator, all_measures, shared);
+    clock.lap(Stage::ocean);
+    Measured measured = measure(study, simulator, all_measures, shared, cost);
+    static_cast<void>(clock.lap());
     row.reuse = reuse_of(measured.record.reuse);
     row.values.insert(row.values.end(), measured.values.begin(), measured.values.end());
     row.cells = std::move(measured.cells);
@@ -157,6 +162,7 @@ Row Realiser::Impl::make(std::uint64_t index, double bytes) {
       row.values.push_back(own.of(tree, simulator, measured.record));
     if (study.rare.event)
       row.values.push_back(study.rare.event->of(study.rare.event->excess_of(row.values)));
+    clock.lap(Stage::measures);
     if (keeps_series(study.measure, index))
       keep_series(measured.record, study, simulator.scenario(), row);
   } catch (const MemoryError& error) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "study/measures/cell_counts.h"
+#include "study/measures/row_cost.h"
 #include "study/plan/study.h"
 
 namespace asdic::detail::study {
@@ -68,12 +69,16 @@ inline constexpr const char* drawn_from_column = "drawn_from";
 /// its paths) for as long as they have it, which never changes a bit of a row.
 class Realiser {
  public:
+  /// Of what rows have in common, that is kept: then memory stays flat.
+  static constexpr std::size_t shared_bytes = std::size_t{64} << 20;
+
   /// \param processes  on this machine, which share its memory where run.memory does not say
   explicit Realiser(Study study, int processes = 1);
   ~Realiser();
 
   /// \throws InputError naming realisation, key and drawn value (on_error = "stop")
-  [[nodiscard]] Row realise(std::uint64_t index) const;
+  /// \param cost  gets what it took; none: nobody asks
+  [[nodiscard]] Row realise(std::uint64_t index, RowCost* cost = nullptr) const;
   /// One that is not made: what it drew, and why. Its measures are NaN.
   [[nodiscard]] Row skipped(std::uint64_t index, const std::string& fault) const;
 

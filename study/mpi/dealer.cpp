@@ -85,7 +85,7 @@ void Dealer::check_silence() const {
 
 std::uint64_t Dealer::deal() {
   Worker worker(work_, run_, 0);
-  auto told = Clock::now();
+  auto told = Clock::now(), looked = told;
   bool closed = false;
   while (true) {
     const bool over = worker.over();  // before new_rows(): then those are the last
@@ -103,7 +103,10 @@ std::uint64_t Dealer::deal() {
         closed = true;
       }
     }
-    check_silence();
+    if (Clock::now() - looked > tell_every) {  // it asks of every rank
+      looked = Clock::now();
+      check_silence();
+    }
     if (run_.progress && Clock::now() - told > tell_every) {
       told = Clock::now();
       progress_.estimate = estimate_.estimate();

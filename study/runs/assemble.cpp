@@ -30,10 +30,10 @@ std::vector<Segment> segments(const std::vector<const Journal*>& journals, Index
       const IndexSet open = taken.missing(segment);
       for (const IndexRange& piece : open.ranges()) {
         all.push_back({piece, j});
-        more.add(piece);
+        more.add(piece);  // they come in a row
       }
     }
-    for (const IndexRange& segment : more.ranges()) taken.add(segment);
+    taken.add(more);
   }
   std::sort(all.begin(), all.end(),
             [](const Segment& a, const Segment& b) { return a.range.first < b.range.first; });

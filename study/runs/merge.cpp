@@ -117,7 +117,10 @@ void add_rows(Table& table, const Table& from, const Piece& piece) {
   };
   cut(table.index, from.index);
   cut(table.valid, from.valid);
-  for (std::size_t i = 0; i < table.values.size(); ++i) cut(table.values[i], from.values[i]);
+  for (std::size_t i = 0; i < table.values.size(); ++i) {
+    table.values[i].append(from.values[i].span().subspan(piece.row, piece.range.size()));
+    from.values[i].rest();
+  }
 }
 
 /// Messages of skipped realisations are sorted by their number again.

@@ -1,5 +1,6 @@
 #include "study/runs/run_study.h"
 
+#include <sys/resource.h>
 #include <tbb/task_arena.h>
 
 #include <chrono>
@@ -36,8 +37,21 @@ Work work_of(const Study& study, const Realiser& realiser) {
   return work;
 }
 
+namespace {
+
+/// As many files as the system lets this process open: thousands of ranks have a journal each.
+void allow_many_files() {
+  rlimit files{};
+  if (getrlimit(RLIMIT_NOFILE, &files) != 0 || files.rlim_cur >= files.rlim_max) return;
+  files.rlim_cur = files.rlim_max;
+  setrlimit(RLIMIT_NOFILE, &files);
+}
+
+}  // namespace
+
 Journals::Journals(const std::filesystem::path& output, const Work& work,
                    const std::filesystem::path& own, bool retry) {
+  allow_many_files();
   if (!own.empty()) {
     journals_.push_back(std::make_unique<Journal>(own, work.fingerprint));
     own_ = journals_.front().get();
@@ -50,8 +64,7 @@ Journals::Journals(const std::filesystem::path& output, const Work& work,
 
 IndexSet Journals::done() const {
   IndexSet all;
-  for (const auto& journal : journals_)
-    for (const IndexRange& range : journal->done().ranges()) all.add(range);
+  for (const auto& journal : journals_) all.add(journal->done());
   return all;
 }
 
@@ -134,7 +147,7 @@ void import_rows(const std::filesystem::path& path, IndexRange range, bool skipp
   std::size_t series = 0, fault = 0;
   for (std::size_t i = 0; i < table.index.size(); ++i) {
     Row row{.index = table.index[i], .valid = table.valid[i] != 0};
-    for (const std::vector<double>& column : table.values) row.values.push_back(column[i]);
+    for (const ColumnValues& column : table.values) row.values.push_back(column[i]);
     if (!row.valid && fault < faults.size()) {
       const std::string& line = faults[fault++];
       row.fault = line.substr(std::min(line.size(), line.find(": ") + 2));

@@ -23,9 +23,12 @@ std::size_t product(const Shape& shape) {
 
 void StudyFileWriter::write_table() {
   const Table& table = results_.table;
-  // HDF5 has no std::uint64_t among ours; indices are far below 2⁶³.
-  const std::vector<std::int64_t> index(table.index.begin(), table.index.end());
-  const std::vector<std::int8_t> valid(table.valid.begin(), table.valid.end());
+  // HDF5 has no unsigned ones among ours. Indices are far below 2⁶³, and valid is 0 or 1: their
+  // bytes are those of the signed type, as which they may be read.
+  const std::span<const std::int64_t> index(
+      reinterpret_cast<const std::int64_t*>(table.index.data()), table.index.size());
+  const std::span<const std::int8_t> valid(reinterpret_cast<const std::int8_t*>(table.valid.data()),
+                                           table.valid.size());
   column<std::int64_t>("index", index, -1);
   describe(file_, "index", "realisation, counted from 0");
   file_.make_scale("index", "realisation");
@@ -36,7 +39,8 @@ void StudyFileWriter::write_table() {
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const Column& c = table.columns[i];
     const std::string path = "table/" + c.name;
-    column<double>(path, table.values[i], std::numeric_limits<double>::quiet_NaN());
+    column<double>(path, table.values[i].span(), std::numeric_limits<double>::quiet_NaN());
+    table.values[i].rest();
     describe_column(file_, path, c);
     file_.set_attribute(path, "role",
                         c.role == Column::Role::input    ? "input"
@@ -353,7 +357,8 @@ void StudyFileWriter::write_run() {
   if (!table.columns.empty()) file_.make_group("run/reuse");
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const std::string path = "run/reuse/" + table.columns[i].name;
-    file_.write<double>(path, table.values[i], {table.values[i].size()});
+    file_.write<double>(path, table.values[i].span(), {table.values[i].size()});
+    table.values[i].rest();
     describe_column(file_, path, table.columns[i]);
     file_.attach_scales(path, {"index"});
   }

@@ -49,8 +49,7 @@ class StudyFileWriter {
 
   /// A column, here or in the parts.
   template <class T>
-  void column(const std::string& dataset, const std::vector<T>& values, T fill,
-              bool series = false) {
+  void column(const std::string& dataset, std::span<const T> values, T fill, bool series = false) {
     const Shape shape{values.size()};
     if (catalogue_.empty()) {
       file_.write<T>(dataset, values, shape);
@@ -64,13 +63,17 @@ class StudyFileWriter {
                          .rows = series ? part.series_rows : part.rows});
       file_.write_virtual<T>(dataset, shape, parts, fill);
     }
-    noted(dataset, values);
+    noted<T>(dataset, values);
   }
 
   template <class T>
   void noted(const std::string& dataset, const std::vector<T>& values) {
+    noted<T>(dataset, std::span<const T>(values));
+  }
+  template <class T>
+  void noted(const std::string& dataset, std::span<const T> values) {
     Digest digest;
-    digest.add(std::span<const T>(values));
+    digest.add(values);
     note(dataset, {values.size()}, digest.text());
   }
 

@@ -1,6 +1,7 @@
 #include "study/sampling/index_set.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace asdic::detail::study {
 
@@ -26,10 +27,27 @@ void IndexSet::add(IndexRange range) {
   ranges_.insert(ranges_.erase(first, last), range);
 }
 
+void IndexSet::add(const IndexSet& others) {
+  std::vector<IndexRange> both;
+  both.reserve(ranges_.size() + others.ranges_.size());
+  std::merge(ranges_.begin(), ranges_.end(), others.ranges_.begin(), others.ranges_.end(),
+             std::back_inserter(both));
+  ranges_.clear();
+  for (const IndexRange& range : both) {
+    if (ranges_.empty() || ranges_.back().end < range.first)
+      ranges_.push_back(range);
+    else
+      ranges_.back().end = std::max(ranges_.back().end, range.end);
+  }
+}
+
+std::vector<IndexRange>::const_iterator IndexSet::first_after(std::uint64_t index) const noexcept {
+  return std::upper_bound(ranges_.begin(), ranges_.end(), index,
+                          [](std::uint64_t at, const IndexRange& r) { return at < r.end; });
+}
+
 bool IndexSet::contains(std::uint64_t index) const noexcept {
-  const auto after =
-      std::upper_bound(ranges_.begin(), ranges_.end(), index,
-                       [](std::uint64_t at, const IndexRange& r) { return at < r.end; });
+  const auto after = first_after(index);
   return after != ranges_.end() && after->first <= index;
 }
 
@@ -42,8 +60,8 @@ std::uint64_t IndexSet::size() const noexcept {
 IndexSet IndexSet::missing(IndexRange range) const {
   IndexSet result;
   std::uint64_t at = range.first;
-  for (const IndexRange& here : ranges_) {
-    if (here.end <= at) continue;
+  for (auto i = first_after(range.first); i != ranges_.end(); ++i) {
+    const IndexRange& here = *i;
     if (here.first >= range.end) break;
     result.add({at, std::min(here.first, range.end)});
     at = here.end;
@@ -54,8 +72,8 @@ IndexSet IndexSet::missing(IndexRange range) const {
 
 IndexSet IndexSet::within(IndexRange range) const {
   IndexSet result;
-  for (const IndexRange& here : ranges_)
-    result.add({std::max(here.first, range.first), std::min(here.end, range.end)});
+  for (auto i = first_after(range.first); i != ranges_.end() && i->first < range.end; ++i)
+    result.add({std::max(i->first, range.first), std::min(i->end, range.end)});
   return result;
 }
 

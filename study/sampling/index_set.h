@@ -26,6 +26,8 @@ class IndexSet {
   explicit IndexSet(IndexRange range) { add(range); }
 
   void add(IndexRange range);
+  /// In time that is linear in the ranges of both.
+  void add(const IndexSet& others);
   void add(std::uint64_t index) { add({index, index + 1}); }
   [[nodiscard]] bool contains(std::uint64_t index) const noexcept;
   [[nodiscard]] std::uint64_t size() const noexcept;
@@ -40,6 +42,10 @@ class IndexSet {
   [[nodiscard]] IndexSet within(IndexRange range) const;
 
  private:
+  /// The first range that ends beyond an index.
+  [[nodiscard]] std::vector<IndexRange>::const_iterator first_after(
+      std::uint64_t index) const noexcept;
+
   std::vector<IndexRange> ranges_;
 };
 

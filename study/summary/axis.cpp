@@ -43,6 +43,7 @@ std::size_t column_of(const Table& table, const std::string& name) {
 AxisBins make_axis(const SummaryAxis& asked, const Table& table, const Span& ends) {
   AxisBins axis{.column = column_of(table, asked.column)};
   std::vector<double> sorted;
+  sorted.reserve(table.index.size());
   for (std::size_t row = 0; row < table.index.size(); ++row)
     if (counts(table, row, axis.column)) sorted.push_back(table.values[axis.column][row]);
   std::sort(sorted.begin(), sorted.end());
@@ -52,6 +53,9 @@ AxisBins make_axis(const SummaryAxis& asked, const Table& table, const Span& end
   const bool bins = !asked.edges.empty() || asked.bins > 0 || asked.equal_count;
   axis.by_value = !table.columns[axis.column].labels.empty() || (few && !bins);
   axis.edges = axis.by_value ? distinct : edges_of(asked, sorted, ends);
+  sorted = std::vector<double>();  // {} would keep its memory
+  distinct = std::vector<double>();
+  axis.bin.reserve(table.index.size());
   for (std::size_t row = 0; row < table.index.size(); ++row) {
     int bin = -1;
     if (counts(table, row, axis.column)) {
@@ -63,6 +67,7 @@ AxisBins make_axis(const SummaryAxis& asked, const Table& table, const Span& end
     }
     axis.bin.push_back(bin);
   }
+  table.values[axis.column].rest();
   return axis;
 }
 

@@ -1,4 +1,6 @@
 #pragma once
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -8,8 +10,40 @@
 // Indices out of the blocks of Saltelli's design: docs/theory/studies.md
 namespace asdic::detail::study {
 
-/// What the rows of each block measured, NaN where nothing is known. [blocks][rows of a block]
-using BlockValues = std::vector<std::vector<double>>;
+/// What the rows of each block measured, NaN where nothing is known: values of a table, which lie
+/// where they lie.
+class BlockValues {
+ public:
+  /// Where the rows of blocks lie in a table. Of a few bytes a block.
+  class Places {
+   public:
+    Places() = default;
+    /// \param index  of the table's rows, rising \param rows  of a block
+    Places(std::span<const std::uint64_t> index, std::size_t rows);
+    [[nodiscard]] std::size_t blocks() const noexcept { return first_.size(); }
+    /// None: it is not in the table.
+    [[nodiscard]] std::optional<std::size_t> row(std::size_t block, std::size_t in_block) const;
+
+   private:
+    std::span<const std::uint64_t> index_;
+    std::size_t rows_ = 1;
+    std::vector<std::size_t> first_;  // [blocks] its first row in the table
+  };
+
+  /// \param values  [rows of the table] \param valid  the same. All outlive this
+  BlockValues(const Places& places, std::span<const double> values,
+              std::span<const std::uint8_t> valid)
+      : places_(places), values_(values), valid_(valid) {}
+
+  [[nodiscard]] std::size_t size() const noexcept { return places_.blocks(); }
+  /// NaN where it is not known.
+  [[nodiscard]] double at(std::size_t block, std::size_t row) const;
+
+ private:
+  const Places& places_;
+  std::span<const double> values_;
+  std::span<const std::uint8_t> valid_;
+};
 
 /// An index with its interval, out of those blocks in which all that it takes is known.
 struct Index {

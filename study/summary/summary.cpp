@@ -196,6 +196,7 @@ SummaryTable statistics_table(const Study& study, const Table& table) {
     RowMean moments(clusters, weighted, WeightedMean::Of::all_rows);
     std::vector<double> sorted;
     std::vector<std::pair<double, double>> with_weights;
+    sorted.reserve(table.index.size());
     for (std::size_t row = 0; row < table.index.size(); ++row) {
       const double weight = weighted ? weights[row] : 1.0;
       if (!counts(table, row, c)) {
@@ -206,6 +207,7 @@ SummaryTable statistics_table(const Study& study, const Table& table) {
       sorted.push_back(table.values[c][row]);
       if (weighted) with_weights.emplace_back(table.values[c][row], weight);
     }
+    table.values[c].rest();
     std::sort(sorted.begin(), sorted.end());
     std::sort(with_weights.begin(), with_weights.end());
     const double none = std::nan("");

@@ -104,6 +104,8 @@ std::vector<SummaryTable> tables_by(const Study& study, const std::vector<Summar
         put(made, {share.weighted().effective_of_event(), share.weighted().largest_share()});
     }
     all.push_back(std::move(made));
+    table.values[c].rest();
+    if (alarms) table.values[*alarms].rest();
   }
   if (others.empty()) return all;
   SummaryTable made = cells.table("means" + suffix, "Means" + along);
@@ -119,6 +121,7 @@ std::vector<SummaryTable> tables_by(const Study& study, const std::vector<Summar
     cells.start_row(made, cell, static_cast<double>(valid));
     for (const std::size_t c : others) {
       const RowMean moments = mean_of(cell, c);
+      table.values[c].rest();
       const Interval interval = moments.interval(false, plan.interval, plan.confidence);
       put(made, {moments.value(false), interval.low, interval.high});
     }

@@ -14,9 +14,11 @@ constexpr std::size_t most_points = 200;
 /// The values of a column that are numbers (−∞ among them), sorted.
 std::vector<double> sorted_values(const Table& table, std::size_t column) {
   std::vector<double> values;
+  values.reserve(table.index.size());
   for (std::size_t row = 0; row < table.index.size(); ++row)
     if (table.valid[row] != 0 && !std::isnan(table.values[column][row]))
       values.push_back(table.values[column][row]);
+  table.values[column].rest();
   std::sort(values.begin(), values.end());
   return values;
 }

@@ -9,20 +9,6 @@
 namespace asdic::detail::study {
 namespace {
 
-/// Where the rows of each block lie in the table; of blocks of which a part is there, too.
-std::vector<std::vector<std::optional<std::size_t>>> places(const SaltelliBlocks& blocks,
-                                                            const Table& table) {
-  std::vector<std::vector<std::optional<std::size_t>>> all;
-  std::uint64_t here = 0;
-  for (std::size_t row = 0; row < table.index.size(); ++row) {
-    const std::uint64_t block = table.index[row] / blocks.rows();
-    if (all.empty() || block != here) all.emplace_back(blocks.rows());
-    here = block;
-    all.back()[table.index[row] % blocks.rows()] = row;
-  }
-  return all;
-}
-
 /// The column of a group that has one alone, whose values have an order.
 std::optional<std::size_t> single_column(const Study& study, const Table& table,
                                          const SaltelliGroup& group) {
@@ -61,7 +47,7 @@ std::vector<SummaryTable> saltelli_tables(const Study& study, const Table& table
   std::vector<std::string> groups;
   groups.reserve(all_groups.size());
   for (const SaltelliGroup& group : all_groups) groups.push_back(group.name);
-  const auto row_places = places(blocks, table);
+  const BlockValues::Places places(table.index, blocks.rows());
   const Table independent = independent_rows(study, table);
   std::vector<std::string> measures;
   for (const Column& column : table.columns)
@@ -125,12 +111,7 @@ std::vector<SummaryTable> saltelli_tables(const Study& study, const Table& table
   for (std::size_t m = 0; m < table.columns.size(); ++m) {
     if (table.columns[m].role != Column::Role::measure) continue;
     const bool proportion = is_proportion(table.columns[m]);
-    BlockValues values;
-    for (const auto& block : row_places) {
-      values.emplace_back();
-      for (const std::optional<std::size_t>& row : block)
-        values.back().push_back(row && counts(table, *row, m) ? table.values[m][*row] : no_value);
-    }
+    const BlockValues values(places, table.values[m].span(), table.valid);
     const Index left = unexplained_share(blocks, values, plan.confidence);
     for (std::size_t i = 0; i < groups.size(); ++i) {
       const Index first = first_order_index(blocks, values, i, plan.confidence);
@@ -144,6 +125,7 @@ std::vector<SummaryTable> saltelli_tables(const Study& study, const Table& table
             x.push_back(independent.values[*c][row]);
             y.push_back(independent.values[m][row]);
           }
+        independent.values[*c].rest();
         if (x.size() >= 4) rank = rank_correlation(ranks(x), y, plan.confidence);
       }
       put_row(made, {measure, static_cast<double>(i), first.blocks,
@@ -158,6 +140,7 @@ std::vector<SummaryTable> saltelli_tables(const Study& study, const Table& table
       }
     }
     measure += 1.0;
+    table.values[m].rest();
   }
   std::vector<SummaryTable> all{std::move(made)};
   if (!pairs.values[0].empty()) all.push_back(std::move(pairs));

@@ -159,11 +159,15 @@ std::vector<SummaryTable> sensitivity_table(const Study& study, const Table& tab
       if (table.columns[i].role != Column::Role::input) continue;
       input += 1.0;
       std::vector<double> x, y;
+      x.reserve(table.index.size());
+      y.reserve(table.index.size());
       for (std::size_t row = 0; row < table.index.size(); ++row)
         if (counts(table, row, m) && counts(table, row, i)) {
           x.push_back(table.values[i][row]);
           y.push_back(table.values[m][row]);
         }
+      table.values[i].rest();
+      table.values[m].rest();
       const auto n = static_cast<double>(x.size());
       std::vector<double> row{measure, input, n, none, none, none, none, none, none, none, none};
       if (x.size() >= 4) {
@@ -228,6 +232,7 @@ std::vector<SummaryTable> convergence_table(const Study& study, const Table& tab
                                        interval.high};
     for (std::size_t k = 0; k < values.size(); ++k) made.values[k].push_back(values[k]);
   }
+  table.values[*question].rest();
   return {made};
 }
 

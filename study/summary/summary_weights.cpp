@@ -42,7 +42,7 @@ std::vector<FromPart> by_part(const Study& study, const Table& table,
                               const std::vector<double>& weights, std::size_t column,
                               double outcome) {
   std::vector<FromPart> parts(study.proposal.parts().size());
-  const std::vector<double>& from = table.values[column_of(table, drawn_from_column)];
+  const ColumnValues& from = table.values[column_of(table, drawn_from_column)];
   for (std::size_t row = 0; row < table.index.size(); ++row) {
     FromPart& part = parts[static_cast<std::size_t>(from[row])];
     part.rows += 1.0;

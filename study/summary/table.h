@@ -4,6 +4,7 @@
 
 #include "study/measures/cell_counts.h"
 #include "study/measures/realisation.h"
+#include "study/summary/column_values.h"
 
 namespace asdic::detail::study {
 
@@ -12,7 +13,7 @@ struct Table {
   std::vector<Column> columns{};
   std::vector<std::uint64_t> index{};         ///< [rows]
   std::vector<std::uint8_t> valid{};          ///< [rows]
-  std::vector<std::vector<double>> values{};  ///< [columns][rows]
+  std::vector<ColumnValues> values{};         ///< [columns][rows]
   CellSums cells{};                           ///< of all these rows, where cells are counted
 };
 

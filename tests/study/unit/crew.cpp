@@ -120,7 +120,9 @@ TEST_F(Board, AFolderHoldsAnyStudysBlocks) {
   EXPECT_EQ(BlockBoard::block_size(1), 1U);
   EXPECT_EQ(BlockBoard::block_size(4096), 1U);
   EXPECT_EQ(BlockBoard::block_size(4097), 2U);
-  EXPECT_LE(10'000'000 / BlockBoard::block_size(10'000'000), 4096U);
+  EXPECT_LE(10'000'000 / BlockBoard::block_size(10'000'000), 65536U);
+  EXPECT_GT(10'000'000 / BlockBoard::block_size(10'000'000), 60000U) << "some for 10⁴ workers each";
+  EXPECT_EQ(1'000'000 / BlockBoard::block_size(1'000'000), 15625U);
 }
 
 }  // namespace

@@ -1,0 +1,59 @@
+#include "study/pilot/prediction.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "study/summary/clustered_mean.h"
+
+namespace asdic::detail::study {
+
+Predicted predicted_total(std::span<const double> groups, std::uint64_t rows, std::uint64_t count,
+                          double confidence) {
+  Moments of, logs;
+  for (const double x : groups) {
+    of.add(x);
+    logs.add(std::log(std::max(x, 1e-12)));
+  }
+  const double n = of.count(), size = static_cast<double>(rows);
+  const double all = static_cast<double>(count) / size, rest = std::max(0.0, all - n);
+  const double known = size * n * of.mean();
+  Predicted made{.total = known + size * rest * of.mean(), .interval = {}};
+  if (n < 2.0) {
+    made.interval = {std::nan(""), std::nan("")};
+    return made;
+  }
+  if (!(rest > 0.0)) {
+    made.interval = {made.total, made.total};
+    return made;
+  }
+  const double t = student(confidence, n - 1.0), spread = 1.0 / n + 1.0 / rest;
+  const double half = t * of.deviation() * std::sqrt(spread);
+  const double v = logs.deviation() * logs.deviation();
+  const double middle = logs.mean() + 0.5 * v;
+  const double wide = t * std::sqrt(v * spread + 0.5 * v * v / (n - 1.0));
+  const double low = std::min(of.mean() - half, std::exp(middle - wide));
+  const double high = std::max(of.mean() + half, std::exp(middle + wide));
+  made.interval = {known + size * rest * std::max(0.0, low), known + size * rest * high};
+  return made;
+}
+
+std::vector<std::uint64_t> rows_to_try(std::uint64_t count, std::uint64_t groups,
+                                       std::uint64_t rows) {
+  const std::uint64_t all = count / rows, tried = std::min(groups, all);
+  std::vector<std::uint64_t> indices;
+  if (tried == 0) {
+    for (std::uint64_t index = 0; index < count; ++index) indices.push_back(index);
+    return indices;
+  }
+  std::mt19937_64 random(20261127);  // any number: the same rows each time
+  for (std::uint64_t k = 0; k < tried; ++k) {
+    // k·all/tried without leaving 64 bits
+    const auto cut = [&](std::uint64_t i) { return all / tried * i + all % tried * i / tried; };
+    const std::uint64_t group = cut(k) + random() % (cut(k + 1) - cut(k));
+    for (std::uint64_t row = 0; row < rows; ++row) indices.push_back(group * rows + row);
+  }
+  return indices;
+}
+
+}  // namespace asdic::detail::study

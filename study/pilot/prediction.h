@@ -1,0 +1,34 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "study/summary/intervals.h"
+
+// What a few rows tell of all: docs/theory/studies.md, "the cost of a study"
+namespace asdic::detail::study {
+
+/// What all rows cost together, and between what bounds.
+struct Predicted {
+  double total = 0.0;
+  Interval interval{};
+};
+
+/// Σ of the costs of `count` rows, of which some are known.
+///
+/// The mean of those known stands for the rest. Its interval is the wider of two at either end:
+/// Student's t, and Cox's of a log-normal law (Zhou & Gao, Stat. Med. 16, 783, 1997), as costs are
+/// skewed and rows few. Both with the scatter of the rest itself, so that nothing is left to
+/// predict where all rows are known.
+/// \param groups  [groups] mean costs of rows of a group, the groups independent of one another and
+/// of one size \param rows  of a group \param count  of all rows, at least those that are known
+[[nodiscard]] Predicted predicted_total(std::span<const double> groups, std::uint64_t rows,
+                                        std::uint64_t count, double confidence);
+
+/// Which rows to try of `count`: `groups` runs of `rows` indices each, one run in each of as many
+/// equal parts of the study, at random there (the same ones for the same numbers), rising. All
+/// rows, where there are no more. \param rows  runs begin at multiples of it
+[[nodiscard]] std::vector<std::uint64_t> rows_to_try(std::uint64_t count, std::uint64_t groups,
+                                                     std::uint64_t rows);
+
+}  // namespace asdic::detail::study
