@@ -107,6 +107,32 @@ std::string tracks_text(const ProcessedRun& run, const Scenario& scenario) {
   return "\n" + table.text();
 }
 
+ExpectedAlarms alarms_of_even_noise(const ProcessedRun& run) {
+  ExpectedAlarms all;
+  for (const ProcessedPing& ping : run.pings) {
+    const ExpectedAlarms one = expected_alarms(ping.array.result);
+    all.least += one.least;
+    all.most += one.most;
+  }
+  return all;
+}
+
+/// How many false alarms even noise would give, and why that is not cells times the probability.
+std::string alarms_text(const ProcessedRun& run, const Totals& sum) {
+  if (run.pings.empty()) return "";
+  const ExpectedAlarms all = alarms_of_even_noise(run);
+  double cells = 0.0;
+  for (const ProcessedPing& ping : run.pings) cells += ping.array.result.cells;
+  const auto number = [](double x) {
+    return x < 10.0 ? fmt::format("{:.2g}", x) : fmt::format("{:.0f}", x);
+  };
+  return fmt::format(
+      "false alarms: {} found; even noise gives {} to {}: {:g} a cell is set, of {:.0f} cells of "
+      "beams, Doppler filters and time, and in each the largest of overlapping samples counts\n",
+      sum.false_alarms, number(all.least), number(all.most),
+      run.pings.front().array.result.false_alarm_probability, cells);
+}
+
 /// Pings of which more was over the threshold than is kept.
 std::string limit_text(const ProcessedRun& run, const Scenario& scenario) {
   constexpr std::size_t most = DetectorSettings{}.most_detections;
@@ -150,7 +176,7 @@ std::string process_report(const ProcessedRun& run, const Scenario& scenario, do
       count_of(pings, "ping"), count_of(static_cast<std::size_t>(sum.detections), "detection"),
       whose, count_of(static_cast<std::size_t>(sum.false_alarms), "false alarm"), sum.hits,
       sum.misses, count_of(run.tracks.size(), "track"), duration(seconds));
-  return text + notes_text(run) + limit_text(run, scenario);
+  return text + alarms_text(run, sum) + notes_text(run) + limit_text(run, scenario);
 }
 
 std::string process_json(const ProcessedRun& run, const Scenario& scenario,
@@ -203,6 +229,7 @@ std::string process_json(const ProcessedRun& run, const Scenario& scenario,
                         : ordered_json(scenario.targets[static_cast<std::size_t>(t.target)].name)},
          {"error_m", value(t.error.back())}});
   }
+  const ExpectedAlarms even = alarms_of_even_noise(run);
   const ordered_json json = {{"file", file},
                              {"detections", sum.detections},
                              {"of_targets", sum.of_targets},
@@ -211,6 +238,7 @@ std::string process_json(const ProcessedRun& run, const Scenario& scenario,
                              {"hits", sum.hits},
                              {"misses", sum.misses},
                              {"false_alarms", sum.false_alarms},
+                             {"expected_false_alarms", {even.least, even.most}},
                              {"notes", run.notes},
                              {"pings", pings},
                              {"tracks", tracks}};

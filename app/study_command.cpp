@@ -9,6 +9,7 @@
 #include "app/console.h"
 #include "app/interrupt.h"
 #include "app/pictures.h"
+#include "app/study_adapt.h"
 #include "app/study_comparison.h"
 #include "app/study_options.h"
 #include "app/study_progress.h"
@@ -37,6 +38,10 @@ int study_run(const StudyOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   StudyOrder order = order_of(options);
   check_join(options);
+  if (options.join && order.run.until)
+    throw InputError({.where = order.study.until_where,
+                      .got = "study.until beside --join",
+                      .expected = "one of them; --set study.until=[] goes on to the end"});
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   static_cast<std::size_t>(order.threads));
   const StopOnInterrupt interrupt(
@@ -56,15 +61,17 @@ int study_run(const StudyOptions& options) {
     }
     return std::move(*made);
   }();
-  if (!options.quiet) warn(work.fingerprint.warnings);
-  if (const std::string design = study::design_text(order.study); !options.quiet && !design.empty())
+  if (!options.quiet && !options.brief) warn(work.fingerprint.warnings);
+  if (const std::string design = study::design_text(order.study);
+      !options.quiet && !options.brief && !design.empty())
     print(design + '\n');
   order.run.progress = [&](const study::Progress& p) { progress->update(p); };
-  const study::StudyOutcome outcome =
+  study::StudyOutcome outcome =
       options.join ? study::run_crew(work, order.run) : study::run_study(work, order.run);
   progress.reset();
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
-  const int status = report(order, outcome, options.quiet, wall.count());
+  if (options.brief) outcome.found.clear();  // of all rows, not of one round's
+  const int status = report(order, outcome, options.quiet || options.brief, wall.count());
   if (status != 0 || !options.report || options.compare) return status;
   flush_output();
   return draw_pictures({order.run.output.string(), "--html"});
@@ -110,6 +117,11 @@ void add_study_command(Program& program) {
                         "gone; default: 120 s")
             .type_name("SECONDS")
             .check(above_zero());
+        command
+            .add_option("--adapt", options->adapt,
+                        "make no study: find, level by level, from where inputs reach the event of "
+                        "[rare], and write the study with it, to be made by the same command")
+            .type_name("FILE.toml");
         command.add_flag("--assemble", options->assemble,
                          "make no realisations: write a file of those that are there");
         command.footer(
@@ -117,6 +129,7 @@ void add_study_command(Program& program) {
             "was.\n"
             "Example:  asdic study scenarios/studies/detection_range.toml -o detection_range.h5");
         command.runs([options] {
+          if (!options->adapt.empty()) return adapt_study(*options);
           return options->compare ? compare_studies(*options, study_run) : study_run(*options);
         });
       });

@@ -9,6 +9,7 @@
 #include "app/console.h"
 #include "io/result/result_file.h"
 #include "study/runs/study_file.h"
+#include "study/summary/summary_parts.h"
 
 namespace asdic::detail::app {
 namespace {
@@ -29,19 +30,23 @@ std::string columns_of(const study::Table& table) {
               {.name = "to"},
               {.name = "missing"},
               {.name = "meaning", .left = true}});
+  const std::vector<double> weights = study::weights_of(table);  // none: rows of the laws
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    double low = infinity, high = -infinity, sum = 0.0;
+    double low = infinity, high = -infinity, sum = 0.0, total = 0.0;
     std::size_t count = 0;
-    for (const double value : table.values[c]) {
+    const bool weighted = !weights.empty() && table.columns[c].role != study::Column::Role::weight;
+    for (std::size_t row = 0; row < table.values[c].size(); ++row) {
+      const double value = table.values[c][row], weight = weighted ? weights[row] : 1.0;
       if (!std::isfinite(value)) continue;
       low = std::min(low, value);
       high = std::max(high, value);
-      sum += value;
+      sum += weight * value;
+      total += weight;
       ++count;
     }
     const study::Column& column = table.columns[c];
     text.row({column.name, column.unit, short_number(low),
-              short_number(count > 0 ? sum / static_cast<double>(count) : none), short_number(high),
+              short_number(count > 0 ? sum / total : none), short_number(high),
               std::to_string(table.values[c].size() - count), column.meaning});
   }
   return text.text();
@@ -85,6 +90,11 @@ int study_info(const std::string& path) {
                     fingerprint.design, fingerprint.seed));
   if (!fingerprint.overrides.empty())
     print(fmt::format("changed by   {}\n", file.file().attribute_text("", "overrides")));
+  if (study::is_weighted(table))
+    print(
+        "drawn from   a proposal: means are weighted (sum of wx over sum of w), the ends are those "
+        "of what "
+        "was drawn\n");
   print(columns_of(table));
   file.verify();  // last: it reads everything; what differs is an error
   print("data         as the manifest says (SHA-256 of every dataset)\n");

@@ -38,16 +38,40 @@ std::filesystem::path default_output(const std::string& study, study::IndexRange
   return fmt::format("{}_{}-{}.h5", stem, range.first, range.end);
 }
 
-void check_until(const StudyOptions& options, const StudyOrder& order) {
-  if (options.until.empty()) return;
-  study::check_until(order.study);
-  if (order.run.range != study::IndexRange{0, order.study.realisations})
-    throw InputError({.where = "--until",
-                      .got = "a part of the study (" + study::index_text(order.run.range) + ")",
-                      .expected = "the whole of it: a part cannot know when all have enough"});
+/// Of the command, or else of the study file.
+study::Until until_of(const StudyOptions& options, const StudyOrder& order) {
+  const study::Study& study = order.study;
+  const bool of_file = options.until.empty();
+  if (of_file && (study.until.empty() || options.pays_no_heed)) return {};
+  const std::string where = of_file ? study.until_where : "--until";
+  study::check_until(study, where);
+  if (order.run.range != study::IndexRange{0, study.realisations})
+    throw InputError(
+        {.where = where,
+         .got = "a part of the study (" + study::index_text(order.run.range) + ")",
+         .expected = "the whole of it: a part cannot know when all have enough" +
+                     std::string(of_file ? "; --set study.until=[] makes parts" : "")});
+  return {study, of_file ? study.until : options.until, where};
 }
 
 }  // namespace
+
+std::string known_text(const study::Known& known) {
+  const std::string where = known.where.empty() ? "" : " (" + known.where + ')';
+  if (known.rule.empty())
+    return fmt::format(
+        "{}: {}{}, asked for ± {:g}", known.name,
+        std::isfinite(known.half_width) ? fmt::format("± {:.3g}", known.half_width) : "not known",
+        where.empty() ? "" : " at the worst" + where, known.asked);
+  const auto first = known.rule.find_first_not_of(' ');
+  std::string text =
+      fmt::format("{}: {}: {}{}", known.name, known.rule.substr(std::min(first, known.rule.size())),
+                  known.holds ? "holds" : "does not hold", where);
+  const study::RuleValues& values = known.values;
+  if (!std::isfinite(values.mean)) return text;
+  return text + fmt::format(", {:.4g} ({:.4g} to {:.4g} over all looks)", values.mean, values.low,
+                            values.high);
+}
 
 void add_study_options(const Command& command, StudyOptions& options) {
   command
@@ -64,9 +88,10 @@ void add_study_options(const Command& command, StudyOptions& options) {
           "--until", options.until,
           "stop once the confidence interval is at most twice this wide: of the study's first "
           "question, or of NAME, a measure (pd), the worst bin of a table (pd_by_range) or an "
-          "index (total_order); repeated, all of them; looked at after 100, 200, ... 1000, "
-          "2000, ... realisations or blocks")
-      .type_name("[NAME=]HALF_WIDTH")
+          "index (total_order); or once a rule holds, 'pd: low > 0.9 || high < 0.9', of mean, low, "
+          "high, half_width and rows; repeated, all of them; looked at after 100, 200, ... 1000, "
+          "2000, ... realisations or blocks; of --compare: of the paired difference")
+      .type_name("[NAME=]HALF_WIDTH|[NAME:]RULE")
       .one_at_a_time();
   command.add_flag("--fresh", options.fresh, "begin anew: what is there is written over");
   command.add_flag("--retry", options.retry,
@@ -90,8 +115,7 @@ StudyOrder order_of(const StudyOptions& options) {
   order.run.output = options.output.empty() ? default_output(path, order.run.range, count)
                                             : std::filesystem::path(options.output);
   check_output(order.run.output, rules_for(order.run.output, options.force, path));
-  check_until(options, order);
-  order.run.until = study::Until(order.study, options.until);
+  order.run.until = until_of(options, order);
   order.run.fresh = options.fresh;
   order.run.force = options.force;
   order.run.retry = options.retry;
@@ -126,14 +150,11 @@ std::string until_text(const study::StudyOutcome& outcome) {
   const bool enough = std::all_of(outcome.known.begin(), outcome.known.end(),
                                   [](const study::Known& known) { return known.enough(); });
   std::string text = outcome.stopped_early ? "enough after " + all
-                     : enough              ? "as narrow as --until asks for, after all " + all
-                                           : "not as narrow as --until asks for";
+                     : enough              ? "as well known as is asked for, after all " + all
+                                           : "not as well known as is asked for";
   for (const study::Known& known : outcome.known)
-    if (outcome.known.size() > 1 || !known.where.empty() || !known.enough())
-      text += fmt::format(
-          "\n  {}: {}{}, asked for ± {:g}", known.name,
-          std::isfinite(known.half_width) ? fmt::format("± {:.3g}", known.half_width) : "not known",
-          known.where.empty() ? "" : " at the worst (" + known.where + ')', known.asked);
+    if (outcome.known.size() > 1 || !known.where.empty() || !known.enough() || !known.rule.empty())
+      text += "\n  " + known_text(known);
   return text;
 }
 

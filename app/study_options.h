@@ -13,12 +13,14 @@ namespace asdic::detail::app {
 
 struct StudyOptions {
   std::vector<std::string> paths;  ///< one; of --compare several
-  std::string output, range, shard;
+  std::string output, range, shard, adapt;
   std::vector<std::string> overrides;
   std::optional<int> threads;
   std::vector<std::string> until;
   bool fresh = false, force = false, assemble = false, retry = false, quiet = false,
        compare = false, join = false, report = false;
+  bool pays_no_heed = false;      ///< to study.until: a study of a comparison …
+  bool brief = false;             ///< … which says nothing of one round
   std::optional<double> silence;  ///< of workers and ranks [s]
 };
 
@@ -36,6 +38,9 @@ struct StudyOrder {
 
 /// \throws InputError for a study or options that are wrong
 [[nodiscard]] StudyOrder order_of(const StudyOptions& options);
+
+/// "pd: ± 0.03 at the worst (range 12500), asked for ± 0.02"
+[[nodiscard]] std::string known_text(const study::Known& known);
 
 /// Says what came of it. \return the exit status \throws RunError if it was interrupted
 int report(const StudyOrder& order, const study::StudyOutcome& outcome, bool quiet, double seconds);

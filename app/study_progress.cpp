@@ -17,6 +17,9 @@ std::string estimate_text(const study::Estimate& e) {
   int decimals = 4;
   if (half > 0.0 && std::isfinite(half))
     decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(half))), 0, 6);
+  if (e.name == study::rare_event_probability || (half > 0.0 && half < 2e-6))
+    return fmt::format("{} {:.3g} ({:.3g} to {:.3g} at {:g} %)", e.name, e.value, e.low, e.high,
+                       100.0 * e.level);
   const std::string unit = e.unit.empty() || e.unit == "1" ? "" : " " + e.unit;
   return fmt::format("{} {:.{}f}{} ({:.{}f} to {:.{}f} at {:g} %)", e.name, e.value, decimals, unit,
                      e.low, decimals, e.high, decimals, 100.0 * e.level);

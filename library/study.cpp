@@ -27,6 +27,12 @@ StudyResult shown(const detail::study::StudyFile& file) {
     result.units.push_back(column.unit == "1" ? "" : column.unit);
     result.values.push_back(std::move(table.values[i]));
   }
+  detail::study::Table own = file.own();
+  for (std::size_t i = 0; i < own.columns.size(); ++i) {
+    result.columns.push_back(own.columns[i].name);
+    result.units.push_back(own.columns[i].unit == "1" ? "" : own.columns[i].unit);
+    result.values.push_back(std::move(own.values[i]));
+  }
   return result;
 }
 
@@ -72,6 +78,20 @@ detail::study::OwnMeasure own_measure(const detail::study::Study& study,
           }};
 }
 
+/// options.enough, of the rows that count.
+detail::study::EnoughRows enough_of(const StudyOptions& options) {
+  if (!options.enough) return {};
+  return [&options](const detail::study::Table& rows) {
+    StudyResult told;
+    for (std::size_t i = 0; i < rows.columns.size(); ++i) {
+      told.columns.push_back(rows.columns[i].name);
+      told.units.push_back(rows.columns[i].unit == "1" ? "" : rows.columns[i].unit);
+      told.values.push_back(rows.values[i]);
+    }
+    return options.enough(told);
+  };
+}
+
 }  // namespace
 
 std::size_t StudyResult::rows() const noexcept { return values.empty() ? 0 : values[0].size(); }
@@ -88,9 +108,11 @@ StudyResult study(const std::filesystem::path& file, const std::filesystem::path
                   const StudyOptions& options) {
   return translated(
       [&] {
-        detail::study::Study plan = detail::study::read_study(file, options.changes);
-        for (const StudyMeasure& measure : options.measures)
-          plan.measure.own.push_back(own_measure(plan, measure));
+        const detail::study::Study plan =
+            detail::study::read_study(file, options.changes, [&](detail::study::Study& made) {
+              for (const StudyMeasure& measure : options.measures)
+                made.measure.own.push_back(own_measure(made, measure));
+            });
         const detail::study::Realiser realiser(plan);
         const detail::study::Work work = detail::study::work_of(plan, realiser);
         detail::study::StudyRun run{.output = output, .range = {0, plan.realisations}};
@@ -99,6 +121,13 @@ StudyResult study(const std::filesystem::path& file, const std::filesystem::path
         run.session.made =
             detail::provenance(static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
         run.session.study_path = std::filesystem::absolute(file).string();
+        const std::vector<std::string>& until = options.until.empty() ? plan.until : options.until;
+        if (!until.empty() || options.enough) {
+          const std::string where =
+              !options.until.empty() || until.empty() ? "until" : plan.until_where;
+          detail::study::check_until(plan, where);
+          run.until = detail::study::Until(plan, until, where, enough_of(options));
+        }
         if (options.progress)
           run.progress = [&](const detail::study::Progress& p) {
             options.progress(p.done, p.total);

@@ -168,6 +168,14 @@ class Search {
     result.time_cell = settings_.sub_bands / replica_.noise_bandwidth();
     result.doppler_cell = doppler_cell_;
     result.delay_per_doppler = ridge_;
+    const double from = std::max(settings_.first_time.value_or(-infinity), bank_.time(0.0)),
+                 to = std::min(settings_.last_time.value_or(infinity),
+                               bank_.time(static_cast<double>(bank_.samples())));
+    result.cells = static_cast<double>(grid_.looks.size() * bank_.filters()) *
+                   std::max(0.0, to - from) / result.time_cell;
+    result.false_alarm_probability = settings_.normaliser.false_alarm_probability;
+    constexpr double wide = 10.0;  // the −40 dB width over 1/B: 4 of a Hann tone
+    result.rough = replica_.bandwidth() > wide * replica_.noise_bandwidth();
     return result;
   }
 
@@ -440,6 +448,12 @@ class Search {
 
 double sigma_of(double cell, double snr) {
   return cell * std::max(0.1, 0.5 / std::sqrt(2.0 * snr));
+}
+
+ExpectedAlarms expected_alarms(const DetectorResult& of) noexcept {
+  const double set = of.cells * of.false_alarm_probability;
+  const bool one = of.dopplers.size() == 1;
+  return {.least = (one ? 1.4 : 0.95) * set, .most = (of.rough ? 6.0 : one ? 2.0 : 1.3) * set};
 }
 
 double trusted_sigma(const Detection& detection, const DetectorResult& of) {

@@ -67,7 +67,21 @@ struct DetectorResult {
   std::vector<double> thresholds_db;  ///< [probes] level of an echo that just meets the threshold
                                       ///< there [dB re 1 µPa]; ∞ outside of what is searched
   std::size_t peaks = 0;              ///< local maxima over the threshold, before clustering
+  /// That were searched: beams × Doppler filters × 1/B of time. Beams and filters are half of what
+  /// they resolve apart.
+  double cells = 0.0;
+  double false_alarm_probability = 0.0;  ///< that is set, of each
+  bool rough = false;                    ///< the filter's answer to noise: of a pulse with edges
 };
+
+/// How many false alarms even Rayleigh noise gives, at least and at most: cells × the set
+/// probability × 1.4 to 2 with one Doppler filter, 0.95 to 1.3 with several, up to 6 of a tone
+/// without a window. In a cell the largest of overlapping samples counts, and peaks of neighbouring
+/// filters and beams are one. Counted; docs/theory/processing.md, "Background and threshold"
+struct ExpectedAlarms {
+  double least = 0.0, most = 0.0;
+};
+[[nodiscard]] ExpectedAlarms expected_alarms(const DetectorResult& of) noexcept;
 
 /// What a detection's Doppler factor is trusted to [1]: its noise, doppler_sigma, but no better
 /// than a tenth of the span in which a filter answers within 3 dB, nor worse than the bank tells.

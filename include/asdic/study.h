@@ -39,6 +39,8 @@ struct StudyMeasure {
   std::function<double(const Ping& ping)> of{};
 };
 
+struct StudyResult;
+
 struct StudyOptions {
   std::vector<std::string> changes = {};    ///< "key.path=value" each, as of --set
   std::vector<StudyMeasure> measures = {};  ///< after those of the file
@@ -46,6 +48,13 @@ struct StudyOptions {
   bool fresh = false;         ///< begins anew, whatever results are there
   /// Told now and then how many rows are done, and of how many.
   std::function<void(std::uint64_t done, std::uint64_t total)> progress = {};
+  /// Ends before the last row where each is known: "0.05", "pd_by_range=0.1", "pd: low > 0.9", as
+  /// of --until. Empty: what the study file says.
+  std::vector<std::string> until = {};
+  /// A rule of one's own besides, asked after 100, 200, … 1000, 2000, … rows: whether these are
+  /// enough. Of the rows it has columns, units and values. Called by one thread at a time; what it
+  /// throws ends the study.
+  std::function<bool(const StudyResult& rows)> enough = {};
 };
 
 /// The table of a study: a row a realisation.

@@ -49,6 +49,12 @@ void note_read(const std::filesystem::path& path) {
   if (const auto identity = identity_of(path)) all.files.emplace(*identity, path);
 }
 
+void forget_read(const std::filesystem::path& path) {
+  List& all = list();
+  const std::lock_guard lock(all.mutex);
+  if (const auto identity = identity_of(path)) all.files.erase(*identity);
+}
+
 std::optional<std::filesystem::path> read_before(const std::filesystem::path& path) {
   List& all = list();
   const std::lock_guard lock(all.mutex);

@@ -18,6 +18,9 @@ class FilesRead {
 /// A file is about to be read. From any thread.
 void note_read(const std::filesystem::path& path);
 
+/// A result that a command reads and writes anew by turns: it is no input.
+void forget_read(const std::filesystem::path& path);
+
 /// The name under which a file has been read, whatever it is called here (links of both kinds).
 [[nodiscard]] std::optional<std::filesystem::path> read_before(const std::filesystem::path& path);
 

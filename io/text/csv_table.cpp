@@ -32,13 +32,8 @@ std::vector<std::string_view> fields(std::string_view line) {
   return result;
 }
 
-}  // namespace
-
-bool CsvTable::has(const std::string& name) const {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-const std::vector<double>& CsvTable::column(const std::string& name) const {
+std::size_t place_of(const std::vector<std::string>& names, const std::string& name,
+                     const std::string& file) {
   const auto it = std::find(names.begin(), names.end(), name);
   if (it == names.end()) {
     std::string header;
@@ -47,54 +42,96 @@ const std::vector<double>& CsvTable::column(const std::string& name) const {
                       .got = "the columns " + in_quotes(header),
                       .expected = "a column " + in_quotes(name)});
   }
-  return columns[static_cast<std::size_t>(it - names.begin())];
+  return static_cast<std::size_t>(it - names.begin());
 }
 
-CsvTable read_csv(const std::filesystem::path& path) {
+/// Header and rows, in order. \param row  gets the fields of a line, and its number
+template <class Row>
+void read_lines(const std::filesystem::path& path, std::vector<std::string>& names, Row&& row) {
   const std::string text = read_text_file(path, "a readable CSV file");
-  CsvTable table;
-  table.file = path.string();
+  const std::string file = path.string();
   std::istringstream stream(text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text);
   std::string line;
+  bool any = false;
   for (int number = 1; std::getline(stream, line); ++number) {
     const std::string_view content = trim(line);
     if (content.empty() || content.front() == '#') continue;
-    const std::string where = table.file + ":" + std::to_string(number);
+    const std::string where = file + ":" + std::to_string(number);
     const auto cells = fields(content);
-    if (table.names.empty()) {
+    if (names.empty()) {
       for (const std::string_view cell : cells) {
         std::string name(cell);
         std::transform(name.begin(), name.end(), name.begin(),
                        [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-        if (name.empty() || table.has(name))
+        if (name.empty() || std::find(names.begin(), names.end(), name) != names.end())
           throw InputError({.where = where,
                             .got = "the column name " + in_quotes(name),
                             .expected = "names that differ and are not empty"});
-        table.names.push_back(std::move(name));
+        names.push_back(std::move(name));
       }
-      table.columns.resize(table.names.size());
       continue;
     }
-    if (cells.size() != table.names.size())
+    if (cells.size() != names.size())
       throw InputError({.where = where,
                         .got = std::to_string(cells.size()) + " fields",
-                        .expected = std::to_string(table.names.size()) + " as in the header"});
+                        .expected = std::to_string(names.size()) + " as in the header"});
+    row(cells, number);
+    any = true;
+  }
+  if (!any)
+    throw InputError({.where = file,
+                      .got = names.empty() ? "an empty file" : "a header without rows",
+                      .expected = "a header and at least one row of numbers"});
+}
+
+}  // namespace
+
+bool CsvTable::has(const std::string& name) const {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+const std::vector<double>& CsvTable::column(const std::string& name) const {
+  return columns[place_of(names, name, file)];
+}
+
+std::size_t CsvText::column(const std::string& name) const { return place_of(names, name, file); }
+
+std::optional<double> number_in(std::string_view field) {
+  double value = 0.0;
+  const std::string_view cell = field.starts_with('+') ? field.substr(1) : field;
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  if (error != std::errc{} || end != cell.data() + cell.size() || !std::isfinite(value))
+    return std::nullopt;
+  return value;
+}
+
+CsvTable read_csv(const std::filesystem::path& path) {
+  CsvTable table;
+  table.file = path.string();
+  read_lines(path, table.names, [&](const auto& cells, int number) {
+    table.columns.resize(table.names.size());
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      double value = 0.0;
-      const std::string_view cell = cells[i].starts_with('+') ? cells[i].substr(1) : cells[i];
-      const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-      if (error != std::errc{} || end != cell.data() + cell.size() || !std::isfinite(value))
-        throw InputError({.where = where + ": " + table.names[i],
-                          .got = in_quotes(cells[i]),
-                          .expected = "a finite number"});
-      table.columns[i].push_back(value);
+      const std::optional<double> value = number_in(cells[i]);
+      if (!value)
+        throw InputError(
+            {.where = table.file + ":" + std::to_string(number) + ": " + table.names[i],
+             .got = in_quotes(cells[i]),
+             .expected = "a finite number"});
+      table.columns[i].push_back(*value);
     }
     table.lines.push_back(number);
-  }
-  if (table.lines.empty())
-    throw InputError({.where = table.file,
-                      .got = table.names.empty() ? "an empty file" : "a header without rows",
-                      .expected = "a header and at least one row of numbers"});
+  });
+  return table;
+}
+
+CsvText read_csv_text(const std::filesystem::path& path) {
+  CsvText table;
+  table.file = path.string();
+  read_lines(path, table.names, [&](const auto& cells, int number) {
+    table.cells.resize(table.names.size());
+    for (std::size_t i = 0; i < cells.size(); ++i) table.cells[i].emplace_back(cells[i]);
+    table.lines.push_back(number);
+  });
   return table;
 }
 

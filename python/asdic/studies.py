@@ -87,7 +87,7 @@ def _shown(found: dict) -> StudyResult:
 def study(source, output=None, *, measures: Mapping | None = None, set: Mapping | None = None,
           realisations: int | None = None, vary: Mapping | None = None,
           measure=None, summary: Mapping | None = None, fresh: bool = False,
-          progress=None) -> StudyResult:
+          until=None, progress=None) -> StudyResult:
     """Runs a study into a file, in parallel. Rows that are there are not made again, so one that was
     stopped (Ctrl-C) goes on.
 
@@ -109,6 +109,11 @@ def study(source, output=None, *, measures: Mapping | None = None, set: Mapping 
         measures, or [measure]; [summary].
     fresh : bool
         Begins anew, whatever rows are there.
+    until : float, str, callable, or a list of these, optional
+        Ends before the last row: a half-width, ``"pd_by_range=0.1"`` or ``"pd: low > 0.9"``, as
+        ``--until`` takes them; or a function of the table so far (a pandas.DataFrame), True when its
+        rows are enough. Of several all must hold. They are asked after 100, 200, … 1000, 2000, …
+        rows; each time is a chance to stop by luck.
 
     Raises InputError; what a measure raised.
     """
@@ -119,10 +124,21 @@ def study(source, output=None, *, measures: Mapping | None = None, set: Mapping 
         own.append({"name": name, "unit": one.unit, "meaning": one.meaning,
                     "version": one._version(), "samples": one.samples, "of": _called(one.of)})
 
+    asked_for = until if isinstance(until, (list, tuple)) else [] if until is None else [until]
+    words = [str(one) for one in asked_for if not callable(one)]
+    rules = [one for one in asked_for if callable(one)]
+
+    def enough(found: dict) -> bool:
+        import pandas as pd
+
+        rows = pd.DataFrame(found["columns"])
+        return all(bool(rule(rows)) for rule in rules)
+
     def run(file) -> StudyResult:
         with tempfile.TemporaryDirectory() as folder:
             rows = os.path.join(folder, "study.h5") if output is None else os.fspath(output)
-            found = _shown(_core.study(os.fspath(file), rows, changes, own, fresh, progress))
+            found = _shown(_core.study(os.fspath(file), rows, changes, own, fresh, words,
+                                       enough if rules else None, progress))
         tell(found.warnings)
         return found
 

@@ -130,7 +130,8 @@ def inputs(study, vary: dict) -> str:
         else:
             drawn = f"{number(good.min())} to {number(good.max())}, mean {number(good.mean())}" if good.size else "–"
         rows.append([c.name, c.unit if c.unit != "1" else "", law_of(vary, c), drawn, c.meaning])
-    return table(["input", "unit", "law", "drawn", "what it is"], rows, True)
+    as_drawn = "drawn" if study.weights is None else "drawn, from a proposal: not weighed"
+    return table(["input", "unit", "law", as_drawn, "what it is"], rows, True)
 
 
 def answer(study) -> str:
@@ -155,7 +156,9 @@ def false_alarms(study) -> str:
     for c in (c for c in study.columns if c.name.startswith("false_alarm")):
         good = c.values[np.isfinite(c.values)]
         if good.size:
-            rows.append([c.name, number(study.false_alarms), int(good.size), int(good.sum()), number(good.mean())])
+            known = np.isfinite(c.values)
+            rate = good.mean() if study.weights is None else np.average(good, weights=study.weights[known])
+            rows.append([c.name, number(study.false_alarms), int(good.size), int(good.sum()), number(rate)])
     tables = "".join(summary_table(t) for t in study.summary if t.name.startswith(("false_alarm", "tail", "pfa")))
     return (f"<h2>False alarms</h2>{table(['measure', 'asked for', 'looks', 'false alarms', 'rate'], rows)}{tables}"
             if rows or tables else "")
@@ -198,6 +201,14 @@ def warnings(holder) -> str:
     return "".join(f'<p class="warning">{escape(w)}</p>' for w in told)
 
 
+def of_weights(study, summary) -> str:
+    """Of rows that are drawn from a proposal: what their weights do not carry, and what is left out."""
+    if study.weights is None:
+        return ""
+    left_out = f'<p class="note">{escape(study.left_out)}</p>' if study.left_out else ""
+    return warnings(summary) + left_out
+
+
 def of_study(path) -> tuple:
     """→ title, body"""
     study = study_data.read(path)
@@ -208,10 +219,10 @@ def of_study(path) -> tuple:
             vary = {}
         with style.look("light"):
             pictures = figures(study_pictures.draw(study))
-        by = [t for t in study.summary if t.name in ("statistics", "roc_area") or "_by_" in t.name]
+        by = [t for t in study.summary if t.name in ("statistics", "roc_area", "drawn_from") or "_by_" in t.name]
         influence = [t for t in study.summary if t.name in ("sensitivity", "interactions")]
         body = [f"<h1>{escape(study.title or Path(path).name)}</h1><p class=\"note\">{escape(study.heading())}</p>",
-                answer(study), warnings(f), "<h2>What was drawn</h2>", inputs(study, vary), false_alarms(study),
+                answer(study), warnings(f), of_weights(study, f["summary"]), "<h2>What was drawn</h2>", inputs(study, vary), false_alarms(study),
                 "<h2>Pictures</h2>", pictures, "<h2>Answers</h2>", *map(summary_table, by)]
         if influence:
             body += ["<h2>Which input matters</h2>", *map(summary_table, influence)]
@@ -230,7 +241,7 @@ def of_comparison(path) -> tuple:
     with h5py.File(path, "r") as f:
         with style.look("light"):
             pictures = figures(study_comparison.draw(comparison))
-        order = sorted(comparison.summary, key=lambda t: (t.name != "differences", not t.name.startswith("pd_")))
+        order = sorted(comparison.summary, key=lambda t: (t.name != "differences", not t.name.startswith(("pd_", "p_"))))
         unlike = [_text(n) for n in np.ravel(f.attrs.get("unlike_inputs", []))]
         body = [f"<h1>{escape(title)}</h1><p class=\"note\">{escape(comparison.heading())}</p>",
                 f"<pre>{escape(_words(f['answers']))}</pre>"]

@@ -15,14 +15,17 @@ from .data import InputError
 
 KIND = "asdic study"
 
-PROPORTIONS = {"pd": "probability of detection", "pfa": "probability of false alarm"}
+PROPORTIONS = {"pd": "probability of detection", "pfa": "probability of false alarm", "p": "probability"}
 DECIBELS = "_db"
 DEGREES = "_deg"
 SHORT = {"snr": "SNR"}
+WHOLE = {"p_event": "probability of the rare event"}
 
 
 def spoken(name: str) -> str:
     """A column's name as words: "snr_matched_db" → "SNR matched". The unit says that it is in dB or degrees."""
+    if name in WHOLE:
+        return WHOLE[name]
     word, _, rest = name.partition("_")
     if word in PROPORTIONS:
         return f"{PROPORTIONS[word]}, {rest}" if rest else PROPORTIONS[word]
@@ -43,6 +46,7 @@ class Column:
     values: np.ndarray
     role: str = ""
     labels: list = field(default_factory=list)
+    event: bool = False  # of one's own: it happens, or not
 
     def label(self) -> str:
         """For an axis: "range / km", "echo level / dB re 1 µPa"."""
@@ -112,6 +116,8 @@ class Study:
     false_alarms: float | None = None   # probability that the threshold is made for
     tags: dict = field(default_factory=dict)
     laws: dict = field(default_factory=dict)  # of Law, by column
+    weights: np.ndarray | None = None  # of the rows; none where they are drawn from the inputs' laws
+    left_out: str = ""     # which tables are not made, and why
 
     @property
     def interval(self) -> str:
@@ -123,6 +129,7 @@ class Study:
     def heading(self) -> str:
         notes = [f"{self.skipped} skipped"] if self.skipped else []
         notes += [] if self.complete else ["not complete"]
+        notes += ["drawn from a proposal, with weights"] if self.weights is not None else []
         some = f" ({', '.join(notes)})" if notes else ""
         many = "realisation" if self.realisations == 1 else "realisations"
         return f"{self.title or self.path} · {self.realisations} {many}{some}"
@@ -156,7 +163,8 @@ def _column(name, dataset, rows=slice(None)) -> Column:
     labels = [_text(label) for label in np.ravel(attributes.get("labels", []))]
     unit = " re ".join(_text(attributes[key]) for key in ("units", "reference") if key in attributes)
     return Column(name, unit, _text(attributes.get("long_name", name)),
-                  np.asarray(dataset[()], float)[rows], _text(attributes.get("role", "")), labels)
+                  np.asarray(dataset[()], float)[rows], _text(attributes.get("role", "")), labels,
+                  bool(np.ravel(attributes.get("event", 0))[0]))
 
 
 def _summary(name, group) -> SummaryTable:
@@ -202,6 +210,8 @@ def read(path) -> Study:
                 raise InputError(path, f"{valid.size} realisations, and none of them valid",
                                  "at least one that is: let the study go on")
             columns = [_column(n, f["table"][n], valid) for n in _order(f)]
+            weights = next((np.exp(c.values) for c in columns if c.name == "log_weight" and c.role == "weight"), None)
+            columns = [c for c in columns if c.role != "weight"]
             summary = [_summary(n, g) for n, g in f["summary"].items()]
             return Study(path, _text(f.attrs.get("title", "")), int(valid.size),
                          bool(f.attrs.get("complete", 1)), columns, summary,
@@ -211,7 +221,7 @@ def read(path) -> Study:
                          dict(title=_text(f.attrs.get("title", "")),
                               version=_text(f.attrs.get("program_version", "")),
                               digest=_text(f.attrs.get("identity", ""))),
-                         _laws(f))
+                         _laws(f), weights, _text(f["summary"].attrs.get("left_out", "")))
     except (KeyError, OSError, ValueError) as error:
         raise InputError(path, f"what cannot be read ({error})",
                          "a whole file of `asdic study` or `asdic merge`") from error

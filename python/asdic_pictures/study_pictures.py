@@ -11,8 +11,10 @@ from .study_data import Column, Study, SummaryTable, spoken
 
 MOST_PANELS = 12
 MOST_BESIDE = 6  # inputs of two maps side by side
-YES_OR_NO = ("detected", "false_alarm")
+YES_OR_NO = ("detected", "false_alarm", "rare_event")
 CELL_WORDS = {"pfa": "false-alarm rate", "k_shape": "shape of the K distribution (high: Rayleigh)"}
+RARE = "p_event"  # drawn from a proposal or not: by its logarithm
+WORTH = 10.0  # effective rows of an event that say something of its least probability
 CELLS = "roc_cells"  # the table of all cells without an echo
 RAYLEIGH = 1e4  # a shape of the K distribution that nobody tells from it
 TAIL = 0.1  # share of the values without an echo that the tail of an ROC is drawn after
@@ -71,6 +73,8 @@ def band(axes, table: SummaryTable, x: str, y: str, colour: str, label: str | No
     if y == "k_shape":  # without end: Rayleigh
         value = Column(y, value.unit, value.meaning, np.minimum(value.values, RAYLEIGH))
         high = np.minimum(high, RAYLEIGH)
+    if y == RARE:  # none found: the band alone
+        value = Column(y, value.unit, value.meaning, np.where(value.values > 0.0, value.values, np.nan))
     if at.labels:
         place = np.arange(at.values.size)
         axes.errorbar(place, value.values, [value.values - low, high - value.values], fmt="o",
@@ -120,6 +124,10 @@ def rate_axis(axes, table: SummaryTable, name: str) -> None:
         axes.annotate("as it is set", (0.99, wanted), xycoords=("axes fraction", "data"),
                       ha="right", va="bottom", fontsize=8.5, color=style.NOTE)
         least, most = max(min(least, wanted / 3.0), wanted / 300.0), min(max(most, 3.0 * wanted), 1.0)
+    if name == RARE:
+        known = table["effective"].values >= WORTH if "effective" in table else table[name].values > 0.0
+        found = table[name].values[known & (table[name].values > 0.0)]
+        least, most = max(least, found.min(initial=most) / 30.0), min(most, 1.0)
     axes.set_ylim(least, most)
 
 
@@ -140,7 +148,7 @@ def title(table: SummaryTable, names: list) -> str:
     every = len(varying(table))
     some = f", {len(names)} of {every} measures" if len(names) < every else ""
     alone = [n for n in names if not beside(table, n)] or names
-    what = spoken(alone[0]) if alone[0].startswith(("pd", "pfa")) else "means"
+    what = spoken(alone[0]) if alone[0].startswith(("pd", "pfa", "p_", RARE)) else "means"
     if table.name.startswith(ELLIPSES):
         what = "errors of place, and their ellipses"
     what += ", and the false-alarm rate," if len(alone) < len(names) else ""
@@ -171,7 +179,7 @@ def draw_by(study: Study) -> dict:
             orient(a.yaxis, table[name])
             a.set_ylabel(CELL_WORDS.get(name, table[name].label())
                          if table.name.startswith("cells") else table[name].label())
-            if beside(table, name) or table.name.startswith("cells"):
+            if beside(table, name) or table.name.startswith(("cells", RARE)):
                 rate_axis(a, table, name)
             elif table[name].values.size and not table.name.startswith(IN_UNITS):
                 limit = top(table[f"{name}_high"].values)
@@ -433,13 +441,13 @@ def draw_histograms(study: Study) -> dict:
     lines = ", their laws (black)" if any(c.name in study.laws for c in columns) else ""
     fig, axes = panels(study, f"Inputs as they were drawn (grey){lines} and measures (blue)" + some,
                        len(columns))
-    heading(axes[0], study)
+    heading(axes[0], study, "rows as they were drawn, not weighed" if study.weights is not None else "")
     for column, a in zip(columns, axes):
         values = column.values[np.isfinite(column.values)] * column.scale()
         law = study.laws.get(column.name)
         colour = style.BLUE if column.role == "measure" else style.GREY
         different = np.unique(values).size
-        yes_or_no = column.name.startswith(YES_OR_NO) and set(values) <= {0.0, 1.0}
+        yes_or_no = (column.event or column.name.startswith(YES_OR_NO)) and set(values) <= {0.0, 1.0}
         if column.labels:
             count = np.bincount(values.astype(int), minlength=len(column.labels))
             a.bar(np.arange(count.size), count, color=colour)
@@ -611,6 +619,8 @@ def draw_convergence(study: Study) -> dict:
     axes.set_xscale("log")
     axes.set_xlabel("realisations")
     axes.set_ylabel(table[name].label())
+    if name == RARE:
+        rate_axis(axes, table, name)
     how = f", {table.method}" if table.method else ""
     style.subtitle(axes, f"{study.heading()} · band: {study.interval}{how}")
     return {"convergence": fig}

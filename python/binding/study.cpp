@@ -29,14 +29,21 @@ StudyMeasure measure_of(const py::dict& told, const std::shared_ptr<py::object>&
 
 py::dict run(const std::filesystem::path& file, const std::filesystem::path& output,
              const std::vector<std::string>& changes, const py::list& measures, bool fresh,
+             const std::vector<std::string>& until, const py::object& enough,
              const py::object& progress) {
-  StudyOptions options{.changes = changes, .fresh = fresh};
+  StudyOptions options{.changes = changes, .fresh = fresh, .until = until};
   std::vector<std::shared_ptr<py::object>> functions;  // outlive the run, and go with the GIL held
   for (const py::handle& one : measures) {
     const py::dict told = py::reinterpret_borrow<py::dict>(one);
     functions.push_back(std::make_shared<py::object>(told["of"]));
     options.measures.push_back(measure_of(told, functions.back()));
   }
+  if (!enough.is_none())
+    options.enough = [&enough](const StudyResult& rows) {
+      const py::gil_scoped_acquire held;
+      StudyResult copy = rows;
+      return enough(shown(std::move(copy))).cast<bool>();
+    };
   StudyResult result = watched(
       [&](const Watch& watch) {
         options.stop = watch.stop;

@@ -10,9 +10,6 @@
 namespace asdic::detail {
 namespace {
 
-/// No water carries sound so slowly that two slownesses differ by more [s/m].
-constexpr double most_apart = 2.0 / slowest_sea;
-
 /// Standard deviation of what is even over a width.
 double deviation_of_even(double width) noexcept { return width / std::sqrt(12.0); }
 
@@ -37,17 +34,22 @@ PathInterference::PathInterference(std::span<const Vec3> phones, double frequenc
     : pulse_(pulse), frequency_(frequency) {
   double level = 0.0;
   for (const Vec3& x : phones) {
-    phones_.emplace_back(frequency * x);
-    level = std::max(level, phones_.back().head<2>().norm());
-    reach_ = std::max(reach_, phones_.back().norm());
+    level = std::max(level, frequency * x.head<2>().norm());
+    reach_ = std::max(reach_, frequency * x.norm());
   }
-  if (!azimuthally_symmetric) return;
+  if (phones.empty()) return;
+  if (!azimuthally_symmetric) {
+    phones_.emplace(phones, frequency);
+    return;
+  }
+  constexpr double most_apart = PhoneMean::most_apart;
   bessel_.emplace(2.0 * pi * level * most_apart + 1.0);
   // Phones whose phases are alike to 0.02 rad by any two paths are one ring at their mean place: of
   // such a mean the error is the square of that, 1e-4.
   constexpr double alike = 0.02 / (2.0 * pi * most_apart);
   std::vector<Vec2> places;  // radius and height
-  for (const Vec3& x : phones_) places.emplace_back(x.head<2>().norm(), x.z());
+  for (const Vec3& x : phones)
+    places.emplace_back(frequency * x.head<2>().norm(), frequency * x.z());
   std::sort(places.begin(), places.end(), [](const Vec2& a, const Vec2& b) {
     return std::pair(a.y(), a.x()) < std::pair(b.y(), b.x());
   });
@@ -69,13 +71,14 @@ PathInterference::PathInterference(std::span<const Vec3> phones, double frequenc
   for (Ring& ring : rings_) {
     ring.radius /= ring.share;
     ring.height /= ring.share;
-    ring.share /= static_cast<double>(phones_.size());
+    ring.share /= static_cast<double>(phones.size());
   }
 }
 
 std::complex<double> PathInterference::over_phones(const Vec3& apart) const noexcept {
   constexpr double alike = 1e-3;  // [rad]
   if (2.0 * pi * apart.norm() * reach_ < alike) return 1.0;
+  if (phones_) return (*phones_)(apart);
   double re = 0.0, im = 0.0;
   const auto add = [&](double amplitude, double cycles) {
     double across = 0.0;
@@ -83,10 +86,6 @@ std::complex<double> PathInterference::over_phones(const Vec3& apart) const noex
     re += amplitude;
     im += across;
   };
-  if (!bessel_) {
-    for (const Vec3& x : phones_) add(1.0, apart.dot(x));
-    return std::complex<double>(re, im) / static_cast<double>(phones_.size());
-  }
   // Over all bearings, ∫ e^{−iωr·cos β}dβ/2π = J₀(ωr).
   const double level = 2.0 * pi * apart.head<2>().norm();
   for (const Ring& ring : rings_)

@@ -7,6 +7,7 @@
 
 #include "raytrace/math/bessel_table.h"
 #include "reverb/pairs/scattering_sheet.h"
+#include "reverb/power/phone_mean.h"
 #include "reverb/power/pulse_coherence.h"
 
 namespace asdic::detail {
@@ -28,7 +29,7 @@ class PathInterference {
   const PulseCoherence& pulse_;
   double frequency_;
   double reach_ = 0.0;                 // of the furthest
-  std::vector<Vec3> phones_;           // times the frequency
+  std::optional<PhoneMean> phones_;    // not over bearings
   std::optional<BesselTable> bessel_;  // of the mean over bearings
   /// Phones that differ in bearing alone, for that mean.
   struct Ring {

@@ -62,6 +62,8 @@ struct ReverberationStreams {
     std::size_t first = 0, last = 0;  ///< streams
   };
 
+  /// None.
+  ReverberationStreams() = default;
   /// \param fields  every one of which is served   \param limits  as the scatterers have
   ReverberationStreams(std::span<const ScatteringField* const> fields, const AudibleLimits& limits,
                        const Listener& listener);

@@ -33,6 +33,11 @@
 namespace asdic::detail {
 namespace {
 
+/// Of what a projector sends, at 1 m [Pa].
+double peak_pressure_of(const Transmitter& projector) {
+  return std::numbers::sqrt2 * amplitude_from_db(projector.source_level_db) * micropascal;
+}
+
 constexpr std::size_t most_patch_rows = 2000;
 
 std::shared_ptr<const PropagationPaths> paths_of(const Scenario& scenario,
@@ -322,9 +327,7 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
     record.recording.samples = wanted.count;
   }
   record.timings.eigenrays = watch.lap();
-  const double peak_pressure = std::numbers::sqrt2 *
-                               amplitude_from_db(emission.projector.source_level_db) *
-                               micropascal;  // at 1 m [Pa]
+  const double peak_pressure = peak_pressure_of(emission.projector);
   const Synthesizer synthesizer(emission.pulse, record.recording, max_doppler_, paths_->memory());
   std::optional<ReverberationBand> band;
   std::optional<Synthesizer> filtered;
@@ -439,6 +442,35 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
   record.timings.noise = watch.lap();
   record.ended_searches = paths_->memory().ended_searches();
   return record;
+}
+
+PingSimulator::MeanSea PingSimulator::mean_sea(int ping, int array) const {
+  const auto refuse = [](const char* where, const char* got, const char* expected) {
+    throw InputError({.where = where, .got = got, .expected = expected});
+  };
+  if (!receivers_.is_flat())
+    refuse("array.electronics", "receivers with a response of their own", "what is summed without");
+  if (scenario_.pings.continuous || scenario_.pings.blanking)
+    refuse("pings", "a stream, or blanking", "pings by themselves, to sum what they receive");
+  if (scenario_.propagation.wide_band)
+    refuse("propagation.wide_band", "true", "one amplitude for the band, to sum reverberation");
+  if (!scenario_.interferers.empty())
+    refuse("interferer", "ships that are heard", "none, to sum what is received");
+  const Emission emission = emit(transmission(ping), ping);
+  const PingGeometry& geometry = emission.geometry;
+  MeanSea sea{.streams = std::make_shared<const ReverberationStreams>(),
+              .phones = geometry.phones_from(
+                  geometry.reverberation_point(array, emission.pulse.centre_frequency()), array),
+              .peak_pressure = peak_pressure_of(emission.projector)};
+  if (!scenario_.reverberation.enabled) return sea;
+  PingRecord record = blank_record(geometry);
+  MemoryBudget budget = budget_;
+  sea.streams = reverberation_->as_streams(
+      reverberation_context(emission, array, record, sea.phones, {}, &budget));
+  if (sea.streams == nullptr)
+    refuse("reverberation", "scatterers with a texture, or weights that last",
+           "a sea that every ping draws anew, to sum it");
+  return sea;
 }
 
 PingRecord PingSimulator::simulate(int ping) const { return simulate(ping, transmission(ping)); }

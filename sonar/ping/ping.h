@@ -92,6 +92,16 @@ class PingSimulator {
   /// drawn: pressure, level series, patches and interference stay empty.
   [[nodiscard]] PingRecord levels(int ping) const;
 
+  /// An array's reverberation as streams of noise, of which means over draws are sums.
+  struct MeanSea {
+    std::shared_ptr<const ReverberationStreams> streams;  ///< none: there is no reverberation
+    std::vector<Vec3> phones;    ///< from the point where their delays are [m]
+    double peak_pressure = 0.0;  ///< of what is sent, at 1 m [Pa]
+  };
+  /// \throws InputError where simulate() receives something else: scatterers with a texture or
+  /// weights that last, one amplitude for each frequency, receivers that ring, pings that go on
+  [[nodiscard]] MeanSea mean_sea(int ping, int array) const;
+
   /// What simulate() asks for before it makes a ping: what that takes at its peak, by what takes
   /// it, within its budget. Traces the paths to scatterers. \throws MemoryError if that is
   /// too much, as simulate() does

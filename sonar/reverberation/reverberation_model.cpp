@@ -160,23 +160,32 @@ std::shared_ptr<const ReverberationCovariance> ReverberationModel::covariance(
 }
 
 /// Marks the fields that are received as streams: those that they serve, if they have many returns
-/// and no covariance. Out of the paths' memory if they are there.
+/// and no covariance.
 std::shared_ptr<const ReverberationStreams> ReverberationModel::streams(
     std::span<ScatteringField> fields, const ExpectedReverberation& expected,
     const ReverberationContext& context) const {
   if (!may_stream(scenario_, context)) return nullptr;
   const bool wherever = scenario_.reverberation.synthesis == ScattererSynthesis::streams;
   const ReverberationStreams::Listener listener = stream_listener(scenario_, context);
-  std::vector<const ScatteringField*> served;
+  bool any = false;
   for (std::size_t i = 0; i < fields.size(); ++i)
     if (fields[i].received_by == ReceivedBy::scatterers &&
         ReverberationStreams::serves(fields[i]) &&
         (wherever || expected.returns_of(i) >
                          std::max(many, ReverberationStreams::worth(listener, fields[i])))) {
       fields[i].received_by = ReceivedBy::streams;
-      served.push_back(&fields[i]);
+      any = true;
     }
-  if (served.empty()) return nullptr;
+  return any ? streams_of(fields, expected, context) : nullptr;
+}
+
+std::shared_ptr<const ReverberationStreams> ReverberationModel::streams_of(
+    std::span<const ScatteringField> fields, const ExpectedReverberation& expected,
+    const ReverberationContext& context) const {
+  const ReverberationStreams::Listener listener = stream_listener(scenario_, context);
+  std::vector<const ScatteringField*> served;
+  for (const ScatteringField& field : fields)
+    if (field.received_by == ReceivedBy::streams) served.push_back(&field);
   auto key =
       ExpectedReverberation::key(fields, listener.pulse_duration, Kept::reverberation_streams);
   const auto make = [&] {
@@ -195,6 +204,18 @@ std::shared_ptr<const ReverberationStreams> ReverberationModel::streams(
   for (const Vec3& axis : listener.extents) key->add(axis);
   for (const Vec3& place : listener.places) key->add(place);
   return paths_.memory().remember(*key, make);
+}
+
+std::shared_ptr<const ReverberationStreams> ReverberationModel::as_streams(
+    const ReverberationContext& context) const {
+  std::vector<ScatteringField> received = fields_.of(context, ReverberationFields::Ground::means);
+  if (received.empty()) return std::make_shared<const ReverberationStreams>();
+  const auto known = expected(received, context);
+  for (ScatteringField& field : received) {
+    if (!ReverberationStreams::serves(field)) return nullptr;
+    field.received_by = ReceivedBy::streams;
+  }
+  return streams_of(received, *known, context);
 }
 
 Bounces ReverberationModel::bounces(const ReverberationContext& context) const {

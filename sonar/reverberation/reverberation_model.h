@@ -22,6 +22,10 @@ class ReverberationModel {
   [[nodiscard]] PingReverberation ping(const ReverberationContext& context) const;
   /// What ping() would ask the context's budget for, though it may be known: takes it.
   void take_memory(const ReverberationContext& context) const;
+  /// The same reverberation as streams of noise, all of it, however ping() receives it; without
+  /// any, no streams. Null where a field cannot be received so.
+  [[nodiscard]] std::shared_ptr<const ReverberationStreams> as_streams(
+      const ReverberationContext& context) const;
   /// Of the rings of scatterers [m].
   [[nodiscard]] double ground_spacing() const noexcept { return fields_.ground_spacing(); }
   /// Vertical planes around a place in which a record's reverberation is followed.
@@ -39,6 +43,11 @@ class ReverberationModel {
       const ReverberationContext& context) const;
   [[nodiscard]] std::shared_ptr<const ReverberationStreams> streams(
       std::span<ScatteringField> fields, const ExpectedReverberation& expected,
+      const ReverberationContext& context) const;
+
+  /// Of the fields that are received so. Out of the paths' memory if they are there.
+  [[nodiscard]] std::shared_ptr<const ReverberationStreams> streams_of(
+      std::span<const ScatteringField> fields, const ExpectedReverberation& expected,
       const ReverberationContext& context) const;
 
   const Scenario& scenario_;

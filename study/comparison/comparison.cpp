@@ -60,13 +60,13 @@ class Pairing {
   Pairing(const std::vector<Compared>& studies, const std::vector<std::uint64_t>& index) {
     for (const Compared& one : studies) {
       names_.push_back(one.name);
-      tables_.push_back(only_rows(one.table, index));
+      tables_.push_back(only_rows(with_own(*one.study, one.table), index));
     }
     for (const Column& column : tables_.front().columns) {
       const auto has = [&](const Table& table) {
         const Column* found = find_column(table, column.name);
         return found != nullptr && found->role == column.role && found->unit == column.unit &&
-               found->labels == column.labels;
+               found->labels == column.labels && found->event == column.event;
       };
       if (!std::all_of(tables_.begin(), tables_.end(), has)) continue;
       if (column.role == Column::Role::measure) measures.push_back(column.name);
@@ -147,7 +147,7 @@ class Differences {
                                        moments.count(), plan_.confidence);
       put(to, {moments.mean(), interval.low, interval.high});
     }
-    const double sign = least_is_best(column) ? -1.0 : 1.0;
+    const double sign = better(column) == Better::least ? -1.0 : 1.0;
     std::vector<std::size_t> wins(answers.size(), 0);
     for (std::size_t a = 0; a < answers.size(); ++a)
       for (std::size_t b = a + 1; b < answers.size(); ++b) {
@@ -247,10 +247,87 @@ std::vector<SummaryTable> tables_along(const Study& study, const std::vector<Sum
 
 }  // namespace
 
-bool least_is_best(const Column& measure) noexcept {
+Better better(const Column& measure) noexcept {
   const std::string& name = measure.name;
-  return name.find("_error") != std::string::npos || name.starts_with("false_alarm") ||
-         name.starts_with("pfa");
+  if (measure.least_best) return *measure.least_best ? Better::least : Better::greatest;
+  if (!measure.formula.empty()) return Better::neither;
+  if (name.find("_error") != std::string::npos || name.starts_with("false_alarm"))
+    return Better::least;
+  for (const char* good : {"detected", "detection_", "snr_matched_db", "echo_level_db",
+                           "echo_to_background_db", "signal_excess_db"})
+    if (name.starts_with(good)) return Better::greatest;
+  return Better::neither;
+}
+
+std::vector<std::uint64_t> rounds_of(const Study& study, std::uint64_t count) {
+  const Clusters clusters = clusters_of(study);
+  std::vector<std::uint64_t> rounds;
+  if (clusters.kind == Clusters::Kind::replicates) {
+    for (std::uint64_t two = 2; two <= count / clusters.size; two *= 2)
+      for (const std::uint64_t each : {two, two / 2 * 3})
+        if (each * clusters.size < count && is_look(each * clusters.size, clusters))
+          rounds.push_back(each * clusters.size);
+  } else {
+    for (std::uint64_t ten = 100; ten < count; ten *= 10)
+      for (const std::uint64_t digit : {1, 2, 5})
+        if (digit * ten < count) rounds.push_back(digit * ten);
+  }
+  rounds.push_back(count);
+  return rounds;
+}
+
+Known known_difference(const std::vector<Column>& every, const Comparison& comparison,
+                       const std::vector<std::string>& names, const UntilTarget& target) {
+  std::string column = target.column;
+  if (column.empty())
+    if (const std::optional<std::size_t> question = first_question(every))
+      column = every[*question].name;
+  const auto of_rows =
+      std::find_if(every.begin(), every.end(), [&](const Column& c) { return c.name == column; });
+  Known known{.name = target.name, .asked = target.half_width};
+  if (of_rows != every.end() && known.name.empty()) known.name = word_of(*of_rows);
+  if (target.rule) known.rule = target.rule->text();
+  const std::string name = target.axes.empty() ? "differences" : target.name;
+  const auto table =
+      std::find_if(comparison.summary.tables.begin(), comparison.summary.tables.end(),
+                   [&](const SummaryTable& one) { return one.name == name; });
+  if (table == comparison.summary.tables.end()) return known;
+  const auto values = [&](const std::string& of) -> const std::vector<double>& {
+    for (std::size_t c = 0; c < table->columns.size(); ++c)
+      if (table->columns[c].name == of) return table->values[c];
+    return table->values.front();
+  };
+  const std::vector<double>& count = values("count");
+  known.half_width = -1.0;
+  known.holds = true;
+  for (std::size_t row = 0; row < count.size(); ++row) {
+    if (target.axes.empty() && table->columns[0].labels[row] != column) continue;
+    for (std::size_t a = 0; a < names.size(); ++a)
+      for (std::size_t b = a + 1; b < names.size(); ++b) {
+        const std::string pair = names[a] + "_to_" + names[b];
+        const RuleValues here{values(pair)[row], values(pair + "_low")[row],
+                              values(pair + "_high")[row], count[row]};
+        const double half = 0.5 * (here.high - here.low);
+        const bool against = target.rule && known.holds && !holds(*target.rule, here);
+        const bool widest = !target.rule && !(half <= known.half_width);
+        if (against || widest || (target.rule && known.holds)) {
+          known.values = here;
+          known.where = names[b] + " less " + names[a];
+          if (!target.axes.empty()) known.where += ", " + place_in(*table, row);
+        }
+        if (against) known.holds = false;
+        if (widest) known.half_width = std::isfinite(half) ? half : infinity;
+      }
+  }
+  if (known.half_width < 0.0) {
+    known.half_width = infinity;
+    known.holds = known.holds && target.rule && !known.where.empty();
+  }
+  if (target.rule && known.holds && !target.axes.empty()) {  // of no bin in particular
+    known.values = {no_value, no_value, no_value, 0.0};
+    known.where.clear();
+  }
+  return known;
 }
 
 std::vector<std::string> names_of(const std::vector<std::string>& paths) {
@@ -271,6 +348,13 @@ std::vector<std::string> names_of(const std::vector<std::string>& paths) {
   return names;
 }
 
+void check_comparable(const Study& study) {
+  if (is_weighted(study))
+    throw InputError({.where = study.path.string(),
+                      .got = "inputs that are drawn from a proposal",
+                      .expected = "those of the laws alone: pairs of rows have no common weight"});
+}
+
 Comparison compare(const std::vector<Compared>& studies) {
   const Study& first = *studies.front().study;
   if (first.design == Design::saltelli)
@@ -278,6 +362,7 @@ Comparison compare(const std::vector<Compared>& studies) {
                       .got = in_quotes(name(first.design)),
                       .expected = "another design to compare by: pairs are taken for independent, "
                                   "and rows of a block are not"});
+  for (const Compared& other : studies) check_comparable(*other.study);
   for (const Compared& other : studies)
     if (other.study->design_options.replicates != first.design_options.replicates)
       throw InputError({.where = other.study->path.string() + ": study.replicates",
@@ -299,7 +384,10 @@ Comparison compare(const std::vector<Compared>& studies) {
                   .inputs = pairing.inputs,
                   .unlike_inputs = pairing.unlike,
                   .measures = pairing.measures,
+                  .better = {},
                   .summary = {}};
+  for (const std::string& measure : made.measures)
+    made.better.push_back(better(*find_column(pairing.first(), measure)));
   if (made.measures.empty() || made.rows == 0)
     throw InputError({.where = studies.back().study->path.string(),
                       .got = made.rows == 0 ? "no realisation that all studies have"

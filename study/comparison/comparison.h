@@ -4,6 +4,7 @@
 
 #include "study/plan/study.h"
 #include "study/summary/summary.h"
+#include "study/summary/until.h"
 
 namespace asdic::detail::study {
 
@@ -14,12 +15,21 @@ struct Compared {
   Table table;  ///< inputs and measures
 };
 
+/// Which of two answers is better.
+enum class Better {
+  greatest,
+  least,
+  neither  ///< nobody can say (a noise level): `best` is the greatest
+};
+[[nodiscard]] Better better(const Column& measure) noexcept;
+
 /// What several studies of the same realisations differ by.
 struct Comparison {
   std::size_t rows = 0;                    ///< that all have
   std::vector<std::string> inputs;         ///< that all have, with the same values in every row
   std::vector<std::string> unlike_inputs;  ///< that several have, with other values
   std::vector<std::string> measures;       ///< that all have
+  std::vector<Better> better;              ///< [measures]
   Summary summary;
 };
 
@@ -36,7 +46,19 @@ struct Comparison {
 /// Names for columns, out of paths: their stems in [a-z0-9_]; numbers behind those that are alike.
 [[nodiscard]] std::vector<std::string> names_of(const std::vector<std::string>& paths);
 
-/// "range_error": the smaller the better.
-[[nodiscard]] bool least_is_best(const Column& measure) noexcept;
+/// The realisations after which a comparison looks whether it knows enough: 100, 200, 500, 1000, …
+/// and the last; of replicates as is_look(). \param count  of all
+[[nodiscard]] std::vector<std::uint64_t> rounds_of(const Study& study, std::uint64_t count);
+
+/// How well a comparison knows what the studies differ by: of each pair, in each bin, the worst.
+/// \param columns  answer_columns() of the first study \param comparison  of rules with the
+/// confidence that they ask for \param target  of an Until of the first study
+[[nodiscard]] Known known_difference(const std::vector<Column>& columns,
+                                     const Comparison& comparison,
+                                     const std::vector<std::string>& names,
+                                     const UntilTarget& target);
+
+/// Before its rows are made: \throws InputError for a study that has weights, since pairs have none
+void check_comparable(const Study& study);
 
 }  // namespace asdic::detail::study

@@ -21,6 +21,8 @@ std::string_view name(Column::Role role) noexcept {
       return "input";
     case Column::Role::reuse:
       return "reuse";
+    case Column::Role::weight:
+      return "weight";
     case Column::Role::measure:
       break;
   }
@@ -28,9 +30,10 @@ std::string_view name(Column::Role role) noexcept {
 }
 
 Column::Role role(const std::string& text) {
-  return text == "input"   ? Column::Role::input
-         : text == "reuse" ? Column::Role::reuse
-                           : Column::Role::measure;
+  return text == "input"    ? Column::Role::input
+         : text == "reuse"  ? Column::Role::reuse
+         : text == "weight" ? Column::Role::weight
+                            : Column::Role::measure;
 }
 
 /// "A, B and 2 more" of different texts.

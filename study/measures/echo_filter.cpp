@@ -16,6 +16,7 @@
 #include "sonar/noise/noise_spectrum.h"
 #include "sonar/scenario/sampling.h"
 #include "sonar/scenario/scenario.h"
+#include "study/measures/expected_power.h"
 #include "study/plan/no_value.h"
 
 namespace asdic::detail::study {
@@ -251,7 +252,8 @@ class TargetFilter {
     if (!holds(record, filter_, at)) return std::nullopt;
     Place found{.at = at, .around = {}};
     if (plan_.background == MatchedFilterPlan::Background::noise ||
-        plan_.background == MatchedFilterPlan::Background::expected)
+        plan_.background == MatchedFilterPlan::Background::expected ||
+        plan_.background == MatchedFilterPlan::Background::summed)
       return found;
     found.around = reference_cells(
         plan_, record, filter_, [&](std::ptrdiff_t shift) { return near_.free(shift); }, at, cell_);
@@ -285,6 +287,7 @@ class TargetFilter {
   [[nodiscard]] bool near_free(std::ptrdiff_t shift) const { return near_.free(shift); }
   /// When the echo comes [s].
   [[nodiscard]] double delay() const noexcept { return echo_.delay; }
+  [[nodiscard]] double doppler() const noexcept { return echo_.doppler; }
   /// Tries the places without an echo, the nearest first and of two the earlier, until one will do.
   template <class Try>
   void where_free(Try&& will_do) const {
@@ -372,10 +375,10 @@ FilterAnswer filter_answer(const PingSimulator& simulator, const PingRecord& rec
       threshold = -std::log(false_alarm_probability);
       return true;
     }
-    if (plan.background == Background::expected) {
+    if (plan.background == Background::expected || plan.background == Background::summed) {
       if (!(mean > 0.0)) return false;
       statistic = answer_at(place.at) / mean;
-      threshold = cfar_multiplier(false_alarm_probability, expected.draws);
+      threshold = cfar_multiplier(false_alarm_probability, plan.estimated_from());
       return true;
     }
     std::vector<double> powers, times;
@@ -443,6 +446,11 @@ std::vector<FreeCell> free_cells(const PingSimulator& simulator, const PingRecor
       cells.push_back({time, powers[i] / noise});
       continue;
     }
+    if (plan.background == Background::summed) {
+      if (i < expected.cells.size() && expected.cells[i] > 0.0)
+        cells.push_back({time, powers[i] / expected.cells[i]});
+      continue;
+    }
     if (plan.background == Background::expected) {
       if (i < expected.cells.size() && expected.cells[i] > 0.0)
         cells.push_back(
@@ -505,6 +513,35 @@ std::vector<ExpectedAnswer> expected_answers(
       for (std::size_t i = 0; i < lattice.count; ++i)
         all[target].cells[i] += powers[i] / plan.draws;
     }
+  }
+  return all;
+}
+
+std::vector<ExpectedAnswer> summed_answers(const PingSimulator& simulator, const PingRecord& record,
+                                           const MatchedFilterPlan& plan, int array, bool cells) {
+  const ExpectedPower power(simulator, record, array);
+  std::vector<ExpectedAnswer> all(record.targets.size());
+  for (std::size_t target = 0; target < all.size(); ++target) {
+    const TargetFilter one(simulator, record, plan, array, static_cast<int>(target));
+    std::vector<double> later;
+    std::vector<double*> into;
+    const auto ask = [&](std::ptrdiff_t shift, double& answer) {
+      later.push_back(static_cast<double>(shift) / record.recording.sample_rate);
+      into.push_back(&answer);
+    };
+    if (one.place(0)) ask(0, all[target].present);
+    one.where_free([&](const TargetFilter::Place& place) {
+      ask(place.at, all[target].absent);
+      return true;
+    });
+    if (cells) {
+      const TargetFilter::Lattice lattice = one.lattice();
+      all[target].cells.resize(lattice.count);
+      for (std::size_t i = 0; i < lattice.count; ++i)
+        ask(lattice.first + static_cast<std::ptrdiff_t>(i) * lattice.step, all[target].cells[i]);
+    }
+    const std::vector<double> answers = power(one.filter(), one.doppler(), later);
+    for (std::size_t i = 0; i < into.size(); ++i) *into[i] = answers[i];
   }
   return all;
 }

@@ -16,10 +16,10 @@ struct FilterAnswer {
   double threshold = 0.0, absent_threshold = 0.0;  ///< that the false-alarm probability asks for
 };
 
-/// Means of |y|² over draws of noise and scatterers, at the times that a target's filter looks at.
+/// Means of |y|² over noise and scatterers, at the times that a target's filter looks at.
 struct ExpectedAnswer {
   double present = 0.0, absent = 0.0;
-  int draws = 0;                ///< 0: not known
+  int draws = 0;                ///< over which it is a mean; 0: it is known
   std::vector<double> cells{};  ///< the same in all cells of the record, where these are counted
 };
 
@@ -61,5 +61,12 @@ struct FreeCell {
 [[nodiscard]] std::vector<ExpectedAnswer> expected_answers(
     const PingSimulator& simulator, const PingRecord& record, const MatchedFilterPlan& plan,
     int array, bool cells, const std::function<PingRecord(int k, const SampleRange& part)>& draw);
+
+/// The same without draws (expected_power.h). \param cells  of the whole record as well
+/// \throws InputError where it cannot be summed
+[[nodiscard]] std::vector<ExpectedAnswer> summed_answers(const PingSimulator& simulator,
+                                                         const PingRecord& record,
+                                                         const MatchedFilterPlan& plan, int array,
+                                                         bool cells);
 
 }  // namespace asdic::detail::study

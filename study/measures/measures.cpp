@@ -121,6 +121,10 @@ Measured measure(const Study& study, const PingSimulator& simulator,
   if (plan.uses_matched_filter() &&
       plan.matched_filter.background == MatchedFilterPlan::Background::expected)
     expected = expected_of(simulator, made.record, plan, shared);
+  if (plan.uses_matched_filter() &&
+      plan.matched_filter.background == MatchedFilterPlan::Background::summed)
+    expected =
+        summed_answers(simulator, made.record, plan.matched_filter, plan.array, bool(plan.cells));
   if (plan.cells) made.cells = counted_cells(simulator, made.record, plan, expected);
   Collector collector(made.values);
   walk(measures,

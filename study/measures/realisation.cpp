@@ -71,6 +71,9 @@ std::vector<Column> columns(const Study& study) {
   for (Column& column : measure_columns(study, example_of(study))) all.push_back(std::move(column));
   for (const OwnMeasure& own : study.measure.own)
     all.push_back({.name = own.name, .unit = own.unit, .meaning = own.meaning});
+  if (study.rare.event)
+    all.push_back(
+        {.name = rare_event_column, .unit = "1", .meaning = "1: " + study.rare.event->text});
   return all;
 }
 
@@ -152,6 +155,8 @@ Row Realiser::Impl::make(std::uint64_t index, double bytes) {
     row.cells = std::move(measured.cells);
     for (const OwnMeasure& own : study.measure.own)
       row.values.push_back(own.of(tree, simulator, measured.record));
+    if (study.rare.event)
+      row.values.push_back(study.rare.event->of(study.rare.event->excess_of(row.values)));
     if (keeps_series(study.measure, index))
       keep_series(measured.record, study, simulator.scenario(), row);
   } catch (const MemoryError& error) {

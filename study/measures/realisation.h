@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,12 +12,15 @@ namespace asdic::detail::study {
 
 /// A column of a study's table.
 struct Column {
-  enum class Role { input, measure, reuse };
+  enum class Role { input, measure, reuse, weight };
   std::string name;  ///< "wind_speed", "echo_level_db"; [a-z0-9_]
   std::string unit;  ///< "m/s", "dB re 1 µPa", "1"
   std::string meaning;
   Role role = Role::measure;
-  std::vector<std::string> labels;  ///< of a categorical column, whose values are indices into it
+  std::vector<std::string> labels;   ///< of a categorical column, whose values are indices into it
+  std::string formula{};             ///< of a measure of [summary.own], of which rows hold nothing
+  bool event = false;                ///< such a one that is 0 or 1
+  std::optional<bool> least_best{};  ///< such a one that says so
 };
 
 /// What places a kept time series in time and band: p(t) = Re(x_k e^{i2πf_c(t + t_0)}) at
@@ -43,7 +47,14 @@ struct Row {
   std::vector<std::uint8_t> cells{};  ///< packed_counts() of those without an echo, if counted
 };
 
-/// The columns of a study's rows: inputs first, in the order of [vary], then measures.
+/// The column with ln of the weights of rows that are drawn from a proposal: nominal density over
+/// that from which they were drawn.
+inline constexpr const char* log_weight_column = "log_weight";
+/// … and that which tells from which part of the proposal.
+inline constexpr const char* drawn_from_column = "drawn_from";
+
+/// The columns of a study's rows: inputs first, in the order of [vary], then weight and part where
+/// they have them, then measures, last the event of [rare].
 [[nodiscard]] std::vector<Column> columns(const Study& study);
 
 /// Of the cells that are counted in each row.

@@ -13,7 +13,13 @@ std::size_t dimensions_of(const Study& study) {
   std::size_t sum = 0;
   for (const Variable& variable : study.variables)
     sum += dimensions_of(variable, study.design == Design::grid);
-  return sum;
+  return sum + study.proposal.dimensions();
+}
+
+std::vector<std::string> names_of(const Proposal& proposal) {
+  std::vector<std::string> names;
+  for (const ProposalPart& part : proposal.parts()) names.push_back(part.name);
+  return names;
 }
 
 /// [dimensions] to which group of Saltelli's design each coordinate belongs.
@@ -41,6 +47,7 @@ Sampler::Sampler(const Study& study)
     : on_grid_(study.design == Design::grid),
       variables_(study.variables),
       correlation_(study.correlation),
+      proposal_(study.proposal),
       design_(study.design, study.seed, study.realisations, dimensions_of(study),
               study.design_options,
               study.design == Design::saltelli ? groups_of(study) : std::vector<std::size_t>()) {
@@ -66,15 +73,35 @@ Sampler::Sampler(const Study& study)
           columns_.begin()));
   }
   order_ = drawing_order(variables_);
+  if (!proposal_.empty())
+    columns_.push_back({.name = log_weight_column,
+                        .unit = "1",
+                        .meaning = "ln of the row's weight: density of the inputs' laws over that "
+                                   "from which they were drawn",
+                        .role = Column::Role::weight});
+  if (!proposal_.empty())
+    columns_.push_back({.name = drawn_from_column,
+                        .unit = "1",
+                        .meaning = "part of the proposal that the row was drawn from",
+                        .role = Column::Role::weight,
+                        .labels = names_of(proposal_)});
+}
+
+Proposal::Drawn Sampler::point(std::uint64_t index, std::span<double> u) const {
+  std::vector<double> all(design_.dimensions());
+  design_.point(index, all);
+  std::copy_n(all.begin(), u.size(), u.begin());
+  return proposal_.empty() ? Proposal::Drawn{} : proposal_.draw(all.back(), u);
 }
 
 Sampler::Drawn Sampler::draw(std::uint64_t index) const {
-  std::vector<double> u(design_.dimensions());
-  design_.point(index, u);
-  return draw(index, u);
+  std::vector<double> u(dimensions());
+  const Proposal::Drawn from = point(index, u);
+  return draw(index, u, from);
 }
 
-Sampler::Drawn Sampler::draw(std::uint64_t index, std::span<const double> u) const {
+Sampler::Drawn Sampler::draw(std::uint64_t index, std::span<const double> u,
+                             const Proposal::Drawn& from) const {
   std::vector<double> own;  // with the correlation
   if (!correlation_.inputs.empty()) {
     own.assign(u.begin(), u.end());
@@ -111,6 +138,10 @@ Sampler::Drawn Sampler::draw(std::uint64_t index, std::span<const double> u) con
     std::copy(values.begin(), values.end(),
               drawn.values.begin() + static_cast<std::ptrdiff_t>(first_column_[v]));
   }
+  if (!proposal_.empty()) {
+    drawn.values[columns_.size() - 2] = from.log_weight;
+    drawn.values.back() = static_cast<double>(from.part);
+  }
   return drawn;
 }
 
@@ -125,6 +156,7 @@ void Sampler::apply(const Drawn& drawn, TomlValue& scenario) const {
 std::string Sampler::describe(const Drawn& drawn) const {
   std::string text;
   for (std::size_t i = 0; i < columns_.size(); ++i) {
+    if (columns_[i].role != Column::Role::input) continue;
     const double x = drawn.values[i];
     text +=
         (i == 0 ? "" : ", ") + columns_[i].name + " = " +

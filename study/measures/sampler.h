@@ -17,7 +17,8 @@ class Sampler {
  public:
   explicit Sampler(const Study& study);
 
-  /// The columns of the inputs, in the order of [vary].
+  /// The columns of the inputs, in the order of [vary]; last weight and part of rows that
+  /// are drawn from a proposal.
   [[nodiscard]] const std::vector<Column>& columns() const noexcept { return columns_; }
 
   /// What one realisation draws: the values of the columns, and which of its values each choice is.
@@ -27,9 +28,16 @@ class Sampler {
   };
   [[nodiscard]] Drawn draw(std::uint64_t index) const;
   /// The same of a point that is not the design's. \param u  [dimensions()] each in (0, 1), before
-  /// the correlation of inputs
-  [[nodiscard]] Drawn draw(std::uint64_t index, std::span<const double> u) const;
-  [[nodiscard]] std::size_t dimensions() const noexcept { return design_.dimensions(); }
+  /// the correlation of inputs, but as a proposal has drawn it
+  /// \param from  as the proposal has drawn it
+  [[nodiscard]] Drawn draw(std::uint64_t index, std::span<const double> u,
+                           const Proposal::Drawn& from = {}) const;
+  /// Coordinates of the inputs.
+  [[nodiscard]] std::size_t dimensions() const noexcept {
+    return design_.dimensions() - proposal_.dimensions();
+  }
+  /// The point of a realisation, as the proposal has drawn it. \param u  [dimensions()]
+  Proposal::Drawn point(std::uint64_t index, std::span<double> u) const;
   /// What tells the realisation's own draws (noise, scatterers) from those of others.
   [[nodiscard]] std::uint64_t chance_of(std::uint64_t index) const noexcept {
     return design_.chance_of(index);
@@ -45,6 +53,7 @@ class Sampler {
   bool on_grid_;
   std::vector<Variable> variables_;
   Correlation correlation_;
+  Proposal proposal_;
   std::vector<std::size_t> first_column_;        // [variables + 1]
   std::vector<std::size_t> first_dimension_;     // [variables]
   std::vector<std::vector<std::size_t>> given_;  // [variables] columns that each looks at

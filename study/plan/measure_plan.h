@@ -26,6 +26,7 @@ struct MatchedFilterPlan {
     around,    ///< the mean of free cells before and after it (cell averaging)
     trend,     ///< the same cells, of which the level may rise or fall evenly in dB
     expected,  ///< the mean over draws of noise and scatterers at the very time, without targets
+    summed,    ///< the same mean, summed over what is drawn from
     noise      ///< the ambient noise as the scenario gives it: white and independent, nothing else
   };
   Background background = Background::around;
@@ -35,7 +36,8 @@ struct MatchedFilterPlan {
 
   /// Values that the background is estimated from: ∞ where it is known.
   [[nodiscard]] double estimated_from() const noexcept {
-    if (background == Background::noise) return std::numeric_limits<double>::infinity();
+    if (background == Background::noise || background == Background::summed)
+      return std::numeric_limits<double>::infinity();
     return background == Background::expected ? draws : 2.0 * reference_cells;
   }
 };

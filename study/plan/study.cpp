@@ -115,6 +115,12 @@ std::string identity(const Study& study) {
   for (const char* table : {"vary", "correlation", "measure"})
     if (const TomlValue* value = study.document.find(table))
       write(*value, "", study.path.parent_path(), text);
+  // What finds a proposal decides no row of the study that is drawn from it.
+  if (const TomlValue* value = study.document.find("rare")) {
+    TomlValue rare = *value;
+    for (const char* key : {"levels", "rows_per_level"}) erase_key(rare, key);
+    write(rare, "", study.path.parent_path(), text);
+  }
   // Rows made when it was "around" that was left out are others.
   const TomlValue* measure = study.document.find("measure");
   const TomlValue* filter = measure == nullptr ? nullptr : measure->find("matched_filter");

@@ -7,10 +7,12 @@
 #include <vector>
 
 #include "study/plan/measure_plan.h"
+#include "study/plan/rare_plan.h"
 #include "study/plan/summary_plan.h"
 #include "study/sampling/clusters.h"
 #include "study/sampling/correlation.h"
 #include "study/sampling/design.h"
+#include "study/sampling/proposal.h"
 #include "study/sampling/variable.h"
 
 namespace asdic::detail::study {
@@ -38,10 +40,15 @@ struct Study {
   Correlation correlation;          ///< [correlation]
   MeasurePlan measure;              ///< [measure]
   SummaryPlan summary;              ///< [summary]
+  RarePlan rare{};                  ///< [rare]
+  Proposal proposal{};              ///< from where inputs are drawn instead of their laws
+
+  std::vector<std::string> until;  ///< [study] until, as --until takes each of them
+  std::string until_where;         ///< "study.toml:7: study.until"
 
   TomlValue scenario;  ///< what the variables edit: with its include and the overrides in it
-  TomlValue document;  ///< [study], [set], [vary], [correlation], [measure], [summary], with their
-                       ///< overrides
+  TomlValue document;  ///< [study], [set], [vary], [correlation], [measure], [rare], [summary],
+                       ///< with their overrides
 
   std::string scenario_text;            ///< of the scenario, verbatim
   std::filesystem::path scenario_path;  ///< where it was read; files it names are relative to it
@@ -50,6 +57,11 @@ struct Study {
   std::vector<std::string> overrides;  ///< "key.path=value"
   std::vector<std::string> warnings;   ///< what the reader met that the user should know
 };
+
+/// Whether rows are drawn from elsewhere than the inputs' laws, and so have weights.
+[[nodiscard]] inline bool is_weighted(const Study& study) noexcept {
+  return !study.proposal.empty();
+}
 
 /// Inputs that have one index together.
 struct SaltelliGroup {

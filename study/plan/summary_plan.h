@@ -1,6 +1,10 @@
 #pragma once
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "study/expression/expression.h"
 
 namespace asdic::detail::study {
 
@@ -18,6 +22,17 @@ struct SummaryAxis {
   bool equal_count = false;   ///< … or holding equally many rows
 };
 
+/// A measure that is a formula of what the row holds: [summary.own].
+struct OwnFormula {
+  std::string name, unit = "1", meaning;
+  bool event = false;                ///< happens (any value but 0, which becomes 1) or does not (0)
+  std::optional<bool> least_best{};  ///< in comparisons; none: its name says
+  std::optional<double> otherwise{};  ///< where a column in it is not a number; none: nor is it
+  Expression expression;
+  /// [expression.names()] which of columns(study), and behind them of the formulae
+  std::vector<std::size_t> places{};
+};
+
 /// What is made of the rows.
 struct SummaryPlan {
   double confidence = 0.95;
@@ -25,9 +40,10 @@ struct SummaryPlan {
   std::vector<double> quantiles{0.05, 0.25, 0.5, 0.75, 0.95};
   /// Each along one axis or over two. Not given: along every input by itself.
   std::vector<std::vector<SummaryAxis>> by;
-  bool roc = true;          ///< where the matched filter's answers are columns
-  bool convergence = true;  ///< of the first measure
-  bool sensitivity = true;  ///< of every measure to every input
+  std::vector<OwnFormula> own{};  ///< in an order in which each looks at those before it alone
+  bool roc = true;                ///< where the matched filter's answers are columns
+  bool convergence = true;        ///< of the first measure
+  bool sensitivity = true;        ///< of every measure to every input
 };
 
 }  // namespace asdic::detail::study

@@ -22,10 +22,12 @@ void read_matched_filter(TomlTable table, int phones, MatchedFilterPlan& plan) {
   using Background = MatchedFilterPlan::Background;
   // Whoever says which cells wants cells.
   const bool cells = table.has("guard_cells") || table.has("reference_cells");
-  const std::string background = table.choice(
-      "background", {"around", "trend", "expected", "noise"}, cells ? "around" : "expected");
+  const std::string background =
+      table.choice("background", {"around", "trend", "expected", "summed", "noise"},
+                   cells ? "around" : "expected");
   plan.background = background == "trend"      ? Background::trend
                     : background == "expected" ? Background::expected
+                    : background == "summed"   ? Background::summed
                     : background == "noise"    ? Background::noise
                                                : Background::around;
   if (table.has("phone")) plan.phone = static_cast<int>(table.integer("phone", 0, phones - 1));

@@ -13,15 +13,17 @@
 #include "study/plan/target_keys.h"
 #include "study/reader/correlation_reader.h"
 #include "study/reader/measure_reader.h"
+#include "study/reader/rare_reader.h"
 #include "study/reader/summary_reader.h"
 #include "study/reader/vary_reader.h"
 #include "study/summary/summary_parts.h"
+#include "study/summary/until.h"
 
 namespace asdic::detail::study {
 namespace {
 
-constexpr std::array<std::string_view, 6> study_tables{"study",       "set",     "vary",
-                                                       "correlation", "measure", "summary"};
+constexpr std::array<std::string_view, 7> study_tables{"study",   "set",  "vary",   "correlation",
+                                                       "measure", "rare", "summary"};
 
 bool is_study_table(std::string_view key) {
   return std::find(study_tables.begin(), study_tables.end(), key) != study_tables.end();
@@ -37,6 +39,26 @@ TomlValue keep(TomlValue document, bool own) {
   if (TomlValue::Table* table = document.table())
     std::erase_if(*table, [&](const TomlEntry& entry) { return is_study_table(entry.key) != own; });
   return document;
+}
+
+/// until = 0.05, "pd_by_range=0.1", or an array of these.
+void read_until(TomlTable& table, Study& study) {
+  if (!table.has("until")) return;
+  study.until_where = table.where("until");
+  const TomlValue& value = *study.document.find("study")->find("until");
+  const auto read = [&](const TomlValue& one, const std::string& key) {
+    if (const auto* text = std::get_if<std::string>(&one.data))
+      study.until.push_back(*text);
+    else if (const std::optional<double> number = number_of(one))
+      study.until.push_back(to_text(*number));
+    else
+      throw table.fault(key, "a number, a text as --until takes it, or an array of these",
+                        one.describe());
+  };
+  const auto* items = std::get_if<TomlValue::Array>(&value.data);
+  if (items == nullptr) return read(value, "until");
+  for (std::size_t i = 0; i < items->size(); ++i)
+    read((*items)[i], "until[" + std::to_string(i) + "]");
 }
 
 void read_head(TomlTable table, Study& study) {
@@ -72,6 +94,7 @@ void read_head(TomlTable table, Study& study) {
   }
   if (table.choice("on_error", {"stop", "skip"}, "stop") == "skip") study.on_error = OnError::skip;
   static_cast<void>(table.has("scenario"));
+  read_until(table, study);
   table.finish();
 }
 
@@ -102,8 +125,8 @@ void read_scenario_tree(TomlTable head, const TomlValue& document, Study& study)
       if (!is_study_table(entry.key))
         throw InputError({.where = entry.value.origin + ": " + entry.key,
                           .got = "a key of the scenario beside study.scenario",
-                          .expected = "[study], [set], [vary], [correlation], [measure] and "
-                                      "[summary] alone"});
+                          .expected = "[study], [set], [vary], [correlation], [measure], "
+                                      "[rare] and [summary] alone"});
     study.scenario_text = read_text_file(study.scenario_path);
   } else {
     study.scenario_path = study.path;
@@ -196,7 +219,8 @@ void settle_rows(TomlTable head, Study& study) {
 
 }  // namespace
 
-Study read_study(const std::filesystem::path& path, std::span<const std::string> overrides) {
+Study read_study(const std::filesystem::path& path, std::span<const std::string> overrides,
+                 const std::function<void(Study&)>& measures) {
   Study study;
   study.path = path;
   study.text = read_text_file(path, "a study file");
@@ -219,6 +243,8 @@ Study read_study(const std::filesystem::path& path, std::span<const std::string>
     study.correlation = read_correlation(own.table("correlation"),
                                          *study.document.find("correlation"), study.variables);
   settle_rows(root.table("study"), study);
+  TomlTable head = root.table("study"), rare = own.table("rare");
+  read_proposals(head, rare, study);
   if (study.realisations == 0) study.realisations = grid_points(study.variables);
   make_room(study.variables, study.scenario_path, study.scenario);
   study.measure = read_measure(own.table("measure"), example_of(study));
@@ -226,9 +252,20 @@ Study read_study(const std::filesystem::path& path, std::span<const std::string>
     study.warnings.push_back(own.table("measure").where("signal_excess") +
                              ": old name of echo_to_background, before any processing; it will "
                              "go. detection_signal_excess counts processing gain and threshold");
+  if (measures) measures(study);
+  read_event(rare, columns(study), study);
+  rare.finish();
+  if (study.rare.event && !is_weighted(study))
+    study.warnings.push_back(rare.where("event") +
+                             ": rows are drawn from the inputs' own laws; --adapt finds from where "
+                             "the event is reached with fewer of them");
   study.summary =
       read_summary(own.table("summary"), study.document.find("summary"), columns(study));
   check_summary_names(study);
+  if (!study.until.empty()) {
+    check_until(study, study.until_where);
+    static_cast<void>(Until(study, study.until, study.until_where));
+  }
   return study;
 }
 

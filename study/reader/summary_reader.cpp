@@ -4,6 +4,7 @@
 
 #include "core/text.h"
 #include "study/expression/names.h"
+#include "study/reader/own_reader.h"
 
 namespace asdic::detail::study {
 namespace {
@@ -67,8 +68,13 @@ std::vector<SummaryAxis> read_by(const TomlValue& value, const std::string& wher
 }  // namespace
 
 SummaryPlan read_summary(TomlTable table, const TomlValue* value,
-                         const std::vector<Column>& columns) {
+                         const std::vector<Column>& of_rows) {
   SummaryPlan plan;
+  std::vector<Column> columns = of_rows;
+  if (table.has("own")) {
+    plan.own = read_own(table.table("own"), *value->find("own"), of_rows);
+    for (const OwnFormula& own : plan.own) columns.push_back({.name = own.name, .unit = own.unit});
+  }
   plan.confidence = table.number(
       "confidence", {.noun = "probability", .low = 0.5, .high = 0.999999}, plan.confidence);
   if (table.choice("interval", {"wilson", "clopper_pearson"}, "wilson") == "clopper_pearson")

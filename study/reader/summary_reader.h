@@ -5,9 +5,9 @@
 
 namespace asdic::detail::study {
 
-/// [summary]. \param value  the table itself, or null   \param columns  of the rows, which axes
+/// [summary]. \param value  the table itself, or null   \param of_rows  columns, which axes
 /// name   \throws InputError
 [[nodiscard]] SummaryPlan read_summary(TomlTable table, const TomlValue* value,
-                                       const std::vector<Column>& columns);
+                                       const std::vector<Column>& of_rows);
 
 }  // namespace asdic::detail::study

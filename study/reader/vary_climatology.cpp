@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "core/text.h"
 #include "io/climatology/sources.h"
 #include "io/climatology/water.h"
+#include "io/climatology/wind.h"
 
 namespace asdic::detail::study {
 namespace {
@@ -91,6 +93,53 @@ std::vector<int> read_months(TomlTable& table) {
   return months;
 }
 
+constexpr const char* wind_key = "environment.wind_speed";
+
+/// Whether an entry of [vary] writes the wind by itself.
+bool wind_varies(const Study& study) {
+  const TomlValue* vary = study.document.find("vary");
+  const TomlValue::Table* entries = vary == nullptr ? nullptr : vary->table();
+  if (entries == nullptr) return false;
+  return std::any_of(entries->begin(), entries->end(), [](const TomlEntry& entry) {
+    const TomlValue* keys = entry.value.find("keys");
+    if (keys == nullptr) return entry.key == wind_key;
+    const auto* items = std::get_if<TomlValue::Array>(&keys->data);
+    return items != nullptr && std::any_of(items->begin(), items->end(), [](const TomlValue& item) {
+             const auto* key = std::get_if<std::string>(&item.data);
+             return key != nullptr && *key == wind_key;
+           });
+  });
+}
+
+/// The wind of each month beside its water: one draw.
+void add_wind(const std::vector<DataFile>& files, const std::vector<int>& months, double latitude,
+              double longitude, const TomlTable& table, const Study& study, Variable& variable,
+              ChoiceLaw& law) {
+  for (std::size_t i = 0; i < months.size(); ++i) {
+    const climatology::Wind wind(files, {.month = months[i]});
+    const double speed = wind.at(latitude, longitude);
+    if (!std::isfinite(speed))
+      throw table.fault("wind",
+                        "a file with the wind at " + climatology::place(latitude, longitude),
+                        "none there in " + law.labels[0][i]);
+    law.values[i].push_back({.data = speed, .origin = variable.origin});
+    const int fit = wind.first().time_at(latitude, longitude).fit;
+    if (fit > 0 && variable.notes.size() < 20)
+      variable.notes.push_back("wind of " + law.labels[0][i] + ": " +
+                               wind.first().time_at(latitude, longitude).said);
+  }
+  law.labels.emplace_back();
+  law.names = {variable.name, variable.name + "_wind_speed"};
+  law.by_row = true;
+  if (!wind_varies(study) &&
+      std::find(variable.keys.begin(), variable.keys.end(), wind_key) == variable.keys.end())
+    variable.keys.emplace_back(wind_key);
+  if (variable.numbers.size() < 2)
+    variable.numbers.push_back(
+        {.unit = "m/s",
+         .meaning = std::string(wind_key) + ": mean of the month, of the climatology"});
+}
+
 }  // namespace
 
 ChoiceLaw read_climatology(TomlTable& table, const TomlValue& value, Variable& variable,
@@ -125,6 +174,10 @@ ChoiceLaw read_climatology(TomlTable& table, const TomlValue& value, Variable& v
   if (waters.size() > 1 && std::all_of(waters.begin(), waters.end(), same))
     throw table.fault(named.temperature.empty() ? "sound_speed" : "temperature",
                       "files that tell months apart", "the same water in every month");
+  if (const std::vector<DataFile> wind = read_files(table, value, "wind", study); !wind.empty()) {
+    add_wind(wind, months, latitude, longitude, table, study, variable, law);
+    for (const DataFile& file : wind) variable.digest += digest_of(file.path) + ";";
+  }
   for (const DataFile& file : sources.all()) variable.digest += digest_of(file.path) + ";";
   return law;
 }

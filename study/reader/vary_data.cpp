@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/text.h"
+#include "io/climatology/calendar.h"
 #include "io/climatology/netcdf_file.h"
 #include "io/text/csv_table.h"
 #include "study/expression/names.h"
@@ -16,9 +17,10 @@ namespace {
 /// Columns of a file, CSV or netCDF.
 struct Data {
   std::filesystem::path path;
-  std::vector<std::vector<double>> columns;  // as they were asked for
-  std::vector<std::string> units;            // of netCDF; else ""
-  std::vector<int> lines;                    // of CSV
+  std::vector<std::vector<double>> columns;      // as they were asked for
+  std::vector<std::string> units;                // of netCDF; else ""
+  std::vector<std::vector<std::string>> labels;  // of columns of text, which they count into
+  std::vector<int> lines;                        // of CSV
 
   /// "wind.csv:17", "wind.nc: row 16"
   [[nodiscard]] std::string row(std::size_t i) const {
@@ -35,19 +37,72 @@ bool is_netcdf(const std::filesystem::path& path) {
   return text.starts_with("CDF") || text == "\x89HDF";
 }
 
-Data read_data(TomlTable& table, const Study& study, const std::vector<std::string>& names) {
+/// A column of a CSV file: numbers, or texts in the order in which they first stand there.
+void add_column(const CsvText& csv, const std::string& name, bool texts, Data& data) {
+  const std::size_t at = csv.column(name);
+  data.columns.emplace_back();
+  data.labels.emplace_back();
+  data.units.emplace_back();
+  const std::vector<std::string>& cells = csv.cells[at];
+  const auto is_text = [](const std::string& cell) { return !number_in(cell); };
+  const bool all_texts = std::all_of(cells.begin(), cells.end(), is_text);
+  for (std::size_t row = 0; row < cells.size(); ++row) {
+    const std::optional<double> number = number_in(cells[row]);
+    const auto fault = [&](const std::string& expected) {
+      return InputError({.where = csv.file + ":" + std::to_string(csv.lines[row]) + ": " + name,
+                         .got = in_quotes(cells[row]),
+                         .expected = expected});
+    };
+    if (!texts || !all_texts) {
+      if (!number)
+        throw fault(texts ? "a number, as in other rows; or texts in all of them"
+                          : "a finite number");
+      data.columns.back().push_back(*number);
+      continue;
+    }
+    if (cells[row].empty()) throw fault("a text: rows must be whole");
+    std::vector<std::string>& labels = data.labels.back();
+    const auto it = std::find(labels.begin(), labels.end(), cells[row]);
+    data.columns.back().push_back(static_cast<double>(it - labels.begin()));
+    if (it == labels.end()) labels.push_back(cells[row]);
+    if (labels.size() > 10'000) throw fault("at most 10000 different texts in a column");
+  }
+}
+
+/// Dates as days since 1970, if the first one is a date and no number. \return whether they are
+bool read_dates(const CsvText& csv, const std::string& name, Data& data) {
+  const std::vector<std::string>& cells = csv.cells[csv.column(name)];
+  if (number_in(cells.front()) || !parse_moment(cells.front())) return false;
+  data.columns.emplace_back();
+  data.labels.emplace_back();
+  data.units.emplace_back("days since 1970-01-01");
+  for (std::size_t row = 0; row < cells.size(); ++row) {
+    const std::optional<Moment> moment = parse_moment(cells[row]);
+    if (!moment)
+      throw InputError({.where = csv.file + ":" + std::to_string(csv.lines[row]) + ": " + name,
+                        .got = in_quotes(cells[row]),
+                        .expected = "a date such as 2024-01-31 or 2024-01-31T06:00Z, as in the "
+                                    "first row"});
+    data.columns.back().push_back(days(Calendar::standard, *moment));
+  }
+  return true;
+}
+
+/// \param texts  whether columns may be of text \param time  which of the names may be of dates
+Data read_data(TomlTable& table, const Study& study, const std::vector<std::string>& names,
+               bool texts, std::size_t time) {
   Data data{.path = study.path.parent_path() / table.text("file")};
   if (!std::filesystem::is_regular_file(data.path))
     throw table.fault("file", "a CSV or netCDF file",
                       "no such file " + in_quotes(data.path.string()));
   if (!is_netcdf(data.path)) {
-    const CsvTable csv = read_csv(data.path);
-    for (std::string name : names) {
+    const CsvText csv = read_csv_text(data.path);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      std::string name = names[i];
       std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) {
         return static_cast<char>(std::tolower(c));  // as csv.names are
       });
-      data.columns.push_back(csv.column(name));
-      data.units.emplace_back();
+      if (i != time || !read_dates(csv, name, data)) add_column(csv, name, texts, data);
     }
     data.lines = csv.lines;
     return data;
@@ -154,14 +209,18 @@ TimeUnit read_time_unit(TomlTable& table, const std::string& units) {
 }  // namespace
 
 TableLaw read_table_law(TomlTable& table, const TomlValue& value, const Variable& variable,
-                        const Study& study) {
+                        const Study& study, bool in_branch) {
   const std::vector<std::string> columns = read_columns(table, value, variable);
   std::vector<std::string> all = columns;
   const bool weighted = table.has("weight");
   if (weighted) all.push_back(table.text("weight"));
-  Data data = read_data(table, study, all);
+  Data data = read_data(table, study, all, !in_branch, all.size());
+  data.labels.resize(data.columns.size());
   TableLaw law;
   if (weighted) {
+    if (!data.labels.back().empty())
+      throw table.fault("weight", "a column of numbers", in_quotes(all.back()) + ", which is text");
+    data.labels.pop_back();
     const std::vector<double>& weights = data.columns.back();
     for (std::size_t i = 0; i < weights.size(); ++i)
       if (weights[i] < 0.0)
@@ -175,8 +234,9 @@ TableLaw read_table_law(TomlTable& table, const TomlValue& value, const Variable
     law.cumulative.back() = 1.0;
     data.columns.pop_back();
   }
-  law.data = std::make_shared<const DataRows>(
-      DataRows{.names = called(columns, variable), .columns = std::move(data.columns)});
+  law.data = std::make_shared<const DataRows>(DataRows{.names = called(columns, variable),
+                                                       .columns = std::move(data.columns),
+                                                       .labels = std::move(data.labels)});
   return law;
 }
 
@@ -196,8 +256,12 @@ TimeSeriesLaw read_time_series(TomlTable& table, const TomlValue& value, const V
   }
   std::vector<std::string> all = columns;
   all.push_back(table.text("time", "time"));
-  Data data = read_data(table, study, all);
-  const TimeUnit unit = read_time_unit(table, data.units.back());
+  Data data = read_data(table, study, all, false, all.size() - 1);
+  const bool dates = data.units.back() == "days since 1970-01-01" && !data.lines.empty();
+  if (dates && table.has("time_unit"))
+    throw table.fault("time_unit", "no \"time_unit\": the file's times are dates");
+  const TimeUnit unit =
+      dates ? TimeUnit{data.units.back(), 86400.0} : read_time_unit(table, data.units.back());
   law.unit = unit.name;
   law.seconds = unit.seconds;
   law.time = std::move(data.columns.back());
@@ -205,9 +269,11 @@ TimeSeriesLaw read_time_series(TomlTable& table, const TomlValue& value, const V
   if (law.time.size() < 2) throw table.fault("file", "a series of at least two rows", "one row");
   for (std::size_t i = 1; i < law.time.size(); ++i)
     if (!(law.time[i] > law.time[i - 1]))
-      throw table.fault(
-          "file", "times that rise from row to row",
-          to_text(law.time[i]) + " after " + to_text(law.time[i - 1]) + " in " + data.row(i));
+      throw table.fault("file", "times that rise from row to row",
+                        (dates ? iso(moment_of(Calendar::standard, law.time[i])) + " after " +
+                                     iso(moment_of(Calendar::standard, law.time[i - 1]))
+                               : to_text(law.time[i]) + " after " + to_text(law.time[i - 1])) +
+                            " in " + data.row(i));
   law.by_row = table.choice("interpolation", {"linear", "row"}, "linear") == "row";
   if (law.by_row && law.track)
     throw table.fault("interpolation", "\"linear\" for a track, which has a velocity");
@@ -215,8 +281,19 @@ TimeSeriesLaw read_time_series(TomlTable& table, const TomlValue& value, const V
   // The last row holds as long as the others do on the average.
   const double end =
       law.by_row ? last + (last - first) / static_cast<double>(law.time.size() - 1) : last;
-  law.span.low = table.number("from", {.low = first, .high = end}, first);
-  law.span.high = table.number("until", {.low = law.span.low, .high = end, .above = true}, end);
+  const auto limit = [&](const char* key, double least, bool above, double otherwise) {
+    if (!dates || !table.has(key))
+      return table.number(key, {.low = least, .high = end, .above = above}, otherwise);
+    const std::string text = table.text(key);
+    const std::optional<Moment> moment = parse_moment(text);
+    const double at = moment ? days(Calendar::standard, *moment) : std::nan("");
+    if (!(at >= least && at <= end) || (above && at == least))
+      throw table.fault(key, "a date from " + iso(moment_of(Calendar::standard, least)) + " to " +
+                                 iso(moment_of(Calendar::standard, end)));
+    return at;
+  };
+  law.span.low = limit("from", first, false, first);
+  law.span.high = limit("until", law.span.low, true, end);
   std::vector<std::string> names;
   if (law.track) {
     names = {"east", "north", "depth"};

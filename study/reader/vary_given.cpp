@@ -11,14 +11,14 @@ namespace asdic::detail::study {
 namespace {
 
 /// A column of an input that is read already.
-struct Known {
+struct KnownColumn {
   const Variable* variable = nullptr;
   std::size_t column = 0;
   InputColumn what{};
 };
 
-std::vector<Known> known_columns(const Others& others) {
-  std::vector<Known> all;
+std::vector<KnownColumn> known_columns(const Others& others) {
+  std::vector<KnownColumn> all;
   for (const Variable* other : others) {
     const std::vector<InputColumn> columns = input_columns(*other);
     for (std::size_t c = 0; c < columns.size(); ++c) all.push_back({other, c, columns[c]});
@@ -42,7 +42,7 @@ std::string interval_name(const std::vector<double>& edges, std::size_t i) {
 }
 
 /// What the values of the column are called in `laws`.
-std::vector<std::string> names_of(const Known& parent, const std::vector<double>& values) {
+std::vector<std::string> names_of(const KnownColumn& parent, const std::vector<double>& values) {
   if (!parent.what.labels.empty()) return parent.what.labels;
   std::vector<std::string> names;
   for (const double x : values) names.push_back(to_text(x));
@@ -129,6 +129,8 @@ std::vector<std::string> looked_at(const TomlValue& entry) {
   if (const std::string given = text("given"); !given.empty()) names.push_back(given);
   if (text("law") == "expression")
     for (const std::string& name : names_in(text("value"))) names.push_back(name);
+  for (const std::string& key : parameter_keys())
+    for (const std::string& name : names_in(text(key.c_str()))) names.push_back(name);
   const auto add = [&](const TomlValue& branch) {
     for (const std::string& name : looked_at(branch)) names.push_back(name);
   };
@@ -146,9 +148,9 @@ ConditionalLaw read_conditional(TomlTable& table, const TomlValue& value, Variab
   if (table.has("law"))
     throw table.fault("law", "no \"law\" beside given: \"laws\" has one for each case");
   const std::string name = table.text("given");
-  const std::vector<Known> known = known_columns(others);
+  const std::vector<KnownColumn> known = known_columns(others);
   const auto parent = std::find_if(known.begin(), known.end(),
-                                   [&](const Known& one) { return one.what.name == name; });
+                                   [&](const KnownColumn& one) { return one.what.name == name; });
   if (parent == known.end()) throw table.fault("given", "the column of another input");
   ConditionalLaw law{.given = looks_at(variable, name)};
   const auto read_branch = [&](TomlTable branch, const TomlValue& at, const std::string& called) {
@@ -221,24 +223,37 @@ ConditionalLaw read_conditional(TomlTable& table, const TomlValue& value, Variab
   return law;
 }
 
-ExpressionLaw read_expression(TomlTable& table, Variable& variable, const Others& others) {
+Expression read_formula(TomlTable& table, const std::string& key, Variable& variable,
+                        const Others& others, std::vector<std::size_t>& names) {
   std::vector<std::string> numbers;
-  for (const Known& known : known_columns(others))
+  for (const KnownColumn& known : known_columns(others))
     if (known.what.labels.empty()) numbers.push_back(known.what.name);
-  const std::string text = table.text("value");
-  for (const Known& known : known_columns(others)) {
-    const std::vector<std::string> names = names_in(text);
+  const std::string text = table.text(key);
+  for (const KnownColumn& known : known_columns(others)) {
+    const std::vector<std::string> there = names_in(text);
     if (!known.what.labels.empty() &&
-        std::find(names.begin(), names.end(), known.what.name) != names.end())
-      throw table.fault("value",
+        std::find(there.begin(), there.end(), known.what.name) != there.end())
+      throw table.fault(key,
                         "a formula of numbers; a law for each of " + list_of(known.what.labels) +
                             " is had by given = " + in_quotes(known.what.name),
                         in_quotes(known.what.name) + ", which is no number");
   }
-  ExpressionLaw law{.expression = Expression(text, numbers, table.where("value"))};
-  for (const std::string& name : law.expression.names())
-    law.names.push_back(looks_at(variable, name));
-  return law;
+  Expression formula(text, numbers, table.where(key));
+  for (const std::string& name : formula.names()) names.push_back(looks_at(variable, name));
+  return formula;
+}
+
+const std::vector<std::string>& parameter_keys() {
+  static const std::vector<std::string> all{"low",       "high",  "mode",   "mean",
+                                            "deviation", "scale", "median", "log_deviation",
+                                            "shape",     "min",   "max"};
+  return all;
+}
+
+ExpressionLaw read_expression(TomlTable& table, Variable& variable, const Others& others) {
+  std::vector<std::size_t> names;
+  Expression formula = read_formula(table, "value", variable, others, names);
+  return {.expression = std::move(formula), .names = std::move(names)};
 }
 
 }  // namespace asdic::detail::study

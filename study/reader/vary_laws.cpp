@@ -65,6 +65,56 @@ NumberLaw read_number_law(const std::string& name, TomlTable& table) {
   return {cut};
 }
 
+/// The keys that each continuous law has; of two in one entry, one alone.
+struct KeysOfLaw {
+  std::string_view law;
+  std::vector<std::vector<std::string>> keys;
+};
+const std::vector<KeysOfLaw>& keys_of_laws() {
+  static const std::vector<KeysOfLaw> all{{"uniform", {{"low"}, {"high"}}},
+                                          {"normal", {{"mean"}, {"deviation"}}},
+                                          {"log_normal", {{"median"}, {"log_deviation"}}},
+                                          {"triangular", {{"low"}, {"mode"}, {"high"}}},
+                                          {"rayleigh", {{"mean", "scale"}}},
+                                          {"weibull", {{"shape"}, {"mean", "scale"}}}};
+  return all;
+}
+
+/// A law one of whose parameters is a formula.
+ParametricLaw read_parametric(const std::string& name, TomlTable& table, Variable& variable,
+                              const Others& others) {
+  ParametricLaw law{.kind = name};
+  const auto add = [&](const std::string& key) {
+    ParametricLaw::Parameter parameter{.name = key};
+    if (table.is_text(key))
+      parameter.formula = read_formula(table, key, variable, others, parameter.names);
+    else
+      parameter.number = table.number(key, any);
+    law.parameters.push_back(std::move(parameter));
+  };
+  for (const KeysOfLaw& one : keys_of_laws()) {
+    if (one.law != name) continue;
+    for (const std::vector<std::string>& keys : one.keys) {
+      if (keys.size() > 1) require_one(table, keys[0], keys[1]);
+      add(keys.size() > 1 && table.has(keys[1]) ? keys[1] : keys[0]);
+    }
+  }
+  for (const char* limit : {"min", "max"})
+    if (table.has(limit)) add(limit);
+  // What is no formula must make a law whatever the others are: numbers by themselves.
+  for (const ParametricLaw::Parameter& parameter : law.parameters) {
+    const bool above_zero = parameter.name == "deviation" || parameter.name == "log_deviation" ||
+                            parameter.name == "median" || parameter.name == "scale" ||
+                            (parameter.name == "mean" && name != "normal");
+    if (!parameter.formula && above_zero && !(parameter.number > 0.0))
+      throw table.fault(parameter.name, "a number above 0");
+    if (!parameter.formula && parameter.name == "shape" &&
+        !(parameter.number >= 0.1 && parameter.number <= 100.0))
+      throw table.fault(parameter.name, "a number from 0.1 to 100");
+  }
+  return law;
+}
+
 /// Equal weights, or those that stand there, summed up to 1.
 std::vector<double> read_weights(TomlTable& table, std::size_t choices) {
   std::vector<double> weights(choices, 1.0);
@@ -216,7 +266,54 @@ TrackLaw read_track(TomlTable& table, const Variable& variable, const Study& stu
   return law;
 }
 
+/// A law with values where the input's own has them.
+LawInstead read_law_instead(TomlTable& entry, TomlTable table, const CutLaw& own) {
+  const std::string name =
+      table.choice("law", {"uniform", "normal", "log_normal", "triangular", "rayleigh", "weibull"});
+  const CutLaw asked = read_number_law(name, table).law;
+  table.finish();
+  const Span ends = own.ends();
+  const CutLaw cut(asked.law(), std::max(asked.low(), ends.low), std::min(asked.high(), ends.high));
+  // Beyond, the probability that is left has no digits.
+  constexpr double rest = 1e-15;
+  const double middle = cut.share() > 0.0 ? own.distribution(cut.quantile(0.5)) : 0.0;
+  if (!(middle > rest && middle < 1.0 - rest))
+    throw entry.fault("proposal",
+                      "a law whose middle lies where the input itself has values, from " +
+                          to_text(own.quantile(rest)) + " to " + to_text(own.quantile(1.0 - rest)));
+  return {.law = own, .instead = cut};
+}
+
+/// { weights = [..] } of the same choices.
+WeightsInstead read_weights_instead(TomlTable table, const ChoiceLaw& own) {
+  if (!table.has("weights"))
+    throw table.fault("weights",
+                      "weights of the input's " + std::to_string(own.values.size()) + " values");
+  WeightsInstead made{.cumulative = own.cumulative,
+                      .instead = read_weights(table, own.values.size())};
+  const auto weight = [](const std::vector<double>& cumulative, std::size_t i) {
+    return cumulative[i] - (i > 0 ? cumulative[i - 1] : 0.0);
+  };
+  for (std::size_t i = 0; i < own.values.size(); ++i)
+    if (weight(made.instead, i) > 0.0 && !(weight(made.cumulative, i) > 0.0))
+      throw table.fault("weights[" + std::to_string(i) + "]",
+                        "0, as the input itself never takes this value");
+  table.finish();
+  return made;
+}
+
 }  // namespace
+
+CoordinateDraw read_proposal(TomlTable& table, const AnyLaw& law) {
+  if (const auto* number = std::get_if<NumberLaw>(&law))
+    return read_law_instead(table, table.table("proposal"), number->law);
+  const auto* choice = std::get_if<ChoiceLaw>(&law);
+  if (choice != nullptr && choice->kind == ChoiceLaw::Kind::weighted)
+    return read_weights_instead(table.table("proposal"), *choice);
+  throw table.fault("proposal",
+                    "none: a continuous law may have one, and a choice by weights; all others are "
+                    "drawn by [[rare.component]]");
+}
 
 AnyLaw read_law(TomlTable& table, const TomlValue& value, Variable& variable, const Study& study,
                 const Others& others, bool in_branch) {
@@ -247,9 +344,14 @@ AnyLaw read_law(TomlTable& table, const TomlValue& value, Variable& variable, co
     return months;
   }
   if (name == "track") return read_track(table, variable, study);
-  if (name == "table") return read_table_law(table, value, variable, study);
+  if (name == "table") return read_table_law(table, value, variable, study, in_branch);
   if (name == "time_series") return read_time_series(table, value, variable, study);
   if (name == "expression") return read_expression(table, variable, others);
+  const std::vector<std::string>& parameters = parameter_keys();
+  if (std::any_of(parameters.begin(), parameters.end(), [&](const std::string& key) {
+        return table.has_quietly(key) && table.is_text(key);
+      }))
+    return read_parametric(name, table, variable, others);
   return read_number_law(name, table);
 }
 

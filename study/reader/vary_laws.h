@@ -16,6 +16,10 @@ using Others = std::vector<const Variable*>;
 [[nodiscard]] AnyLaw read_law(TomlTable& table, const TomlValue& value, Variable& variable,
                               const Study& study, const Others& others, bool in_branch = false);
 
+/// `proposal` of an entry: a law, or weights of its choices, from which it is drawn instead.
+/// \throws InputError
+[[nodiscard]] CoordinateDraw read_proposal(TomlTable& table, const AnyLaw& law);
+
 /// Names of the columns that an entry's law looks at, known or not.
 [[nodiscard]] std::vector<std::string> looked_at(const TomlValue& entry);
 

@@ -239,6 +239,8 @@ std::vector<Variable> read_vary(const TomlValue& document, const Study& study) {
       };
       if (one.done || !std::all_of(names.begin(), names.end(), known)) continue;
       one.variable.law = read_law(one.table, one.entry->value, one.variable, study, others);
+      if (one.table.has("proposal"))
+        one.variable.proposal = read_proposal(one.table, one.variable.law);
       one.table.finish();
       one.variable.text = inline_toml(one.entry->value);
       others.push_back(&one.variable);

@@ -11,9 +11,9 @@ namespace asdic::detail::study {
 
 void write_comparison_file(OutputFile& output, const std::vector<ComparedFile>& studies,
                            const Comparison& comparison, const std::string& answers,
-                           const Provenance& made) {
+                           const Provenance& made, const std::string& stopped_by) {
   Hdf5File file = Hdf5File::create(output.part());
-  write_filetype(file, "asdic comparison", "1.0");
+  write_filetype(file, "asdic comparison", "1.1");
   std::vector<std::string> names, titles, identities, files;
   for (const ComparedFile& one : studies) {
     names.push_back(one.name);
@@ -28,6 +28,7 @@ void write_comparison_file(OutputFile& output, const std::vector<ComparedFile>& 
   file.set_attribute("", "seed", std::to_string(studies.front().fingerprint.seed));
   file.set_attribute("", "design", studies.front().fingerprint.design);
   file.set_attribute("", "realisations", static_cast<std::int64_t>(comparison.rows));
+  if (!stopped_by.empty()) file.set_attribute("", "stopped_by", stopped_by);
   const auto list = [&](const char* key, const std::vector<std::string>& words) {
     if (!words.empty()) file.set_attribute("", key, words);
   };

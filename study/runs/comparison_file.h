@@ -21,7 +21,7 @@ struct ComparedFile {
 /// whole. \param answers  what it says, for people \throws RunError
 void write_comparison_file(OutputFile& output, const std::vector<ComparedFile>& studies,
                            const Comparison& comparison, const std::string& answers,
-                           const Provenance& made);
+                           const Provenance& made, const std::string& stopped_by = "");
 
 /// Compares every dataset of its summary with its SHA-256. \return what it says, for people
 /// \throws InputError for what is no such file, or has changed

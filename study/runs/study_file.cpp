@@ -122,6 +122,19 @@ Table StudyFile::table() const {
   return table;
 }
 
+Table StudyFile::own() const {
+  Table table{};
+  try {
+    const Json manifest = Json::parse(manifest_);
+    if (manifest.contains("own")) table.columns = columns_from_json(manifest.at("own").dump());
+  } catch (const Json::exception& error) {
+    throw no_manifest(path(), error);
+  }
+  for (const Column& column : table.columns)
+    table.values.push_back(file_.read<double>("table/" + column.name));
+  return table;
+}
+
 CellSums StudyFile::cells() const {
   if (!file_.has("cells/count")) return {};
   std::vector<double> edges = file_.read<double>("cells/time_low");

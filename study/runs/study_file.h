@@ -72,6 +72,7 @@ class StudyFile {
   [[nodiscard]] std::vector<std::string> faults() const;
   [[nodiscard]] std::vector<std::uint64_t> index() const;
   [[nodiscard]] Table table() const;
+  [[nodiscard]] Table own() const;       ///< columns of [summary.own] alone
   [[nodiscard]] CellSums cells() const;  ///< of all its rows; empty where none are counted
   [[nodiscard]] std::vector<std::uint64_t> series_index() const;
   [[nodiscard]] Shape series_shape() const;  ///< of /time_series/pressure; {} if there is none

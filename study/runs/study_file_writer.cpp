@@ -38,7 +38,23 @@ void StudyFileWriter::write_table() {
     const std::string path = "table/" + c.name;
     column<double>(path, table.values[i], std::numeric_limits<double>::quiet_NaN());
     describe_column(file_, path, c);
-    file_.set_attribute(path, "role", c.role == Column::Role::input ? "input" : "measure");
+    file_.set_attribute(path, "role",
+                        c.role == Column::Role::input    ? "input"
+                        : c.role == Column::Role::weight ? "weight"
+                                                         : "measure");
+    file_.attach_scales(path, {"index"});
+  }
+  // Of a catalogue too: they are made of its rows, not of the parts'.
+  const Table& own = results_.summary.own;
+  for (std::size_t i = 0; i < own.columns.size(); ++i) {
+    const Column& c = own.columns[i];
+    const std::string path = "table/" + c.name;
+    file_.write<double>(path, own.values[i], {own.values[i].size()});
+    noted(path, own.values[i]);
+    describe_column(file_, path, c);
+    file_.set_attribute(path, "role", "measure");
+    file_.set_attribute(path, "formula", c.formula);
+    if (c.event) file_.set_attribute(path, "event", std::int64_t{1});
     file_.attach_scales(path, {"index"});
   }
   std::string faults;
@@ -215,7 +231,7 @@ std::string joined(const std::vector<std::string>& texts) {
 
 void StudyFileWriter::write_root() {
   const Fingerprint& fingerprint = results_.fingerprint;
-  write_filetype(file_, "asdic study", "1.4");
+  write_filetype(file_, "asdic study", "1.5");
   file_.set_attribute("", "title", fingerprint.title);
   file_.set_attribute("", "identity", fingerprint.identity);
   file_.set_attribute("", "seed", std::to_string(fingerprint.seed));
@@ -284,19 +300,30 @@ void StudyFileWriter::write_laws() {
       write("density", table.share, "probability density", unit == "1" ? "1" : '(' + unit + ")-1");
     write("cumulative", table.cumulative, "probability of the value or less", "1");
   }
+  for (const RowDensity& one : results_.summary.densities) {
+    const std::string path = "laws/" + one.column + "/density_of_row",
+                      unit = one.unit.substr(0, one.unit.find(" re "));
+    file_.write<double>(path, one.density, {one.density.size()});
+    describe(file_, path, "probability density of what the row drew, given its other inputs",
+             unit == "1" ? "1" : '(' + unit + ")-1");
+    file_.attach_scales(path, {"index"});
+    noted(path, one.density);
+  }
 }
 
 void StudyFileWriter::write_manifest() {
   Json datasets = Json::object();
   for (const auto& [name, noted] : noted_)
     datasets[name] = {{"shape", noted.shape}, {"sha256", noted.sha256}};
-  const Json manifest = {{"identity", results_.fingerprint.identity},
-                         {"first", results_.range.first},
-                         {"end", results_.range.end},
-                         {"rows", results_.table.index.size()},
-                         {"complete", results_.complete()},
-                         {"columns", Json::parse(to_json(results_.fingerprint.columns))},
-                         {"datasets", datasets}};
+  Json manifest = {{"identity", results_.fingerprint.identity},
+                   {"first", results_.range.first},
+                   {"end", results_.range.end},
+                   {"rows", results_.table.index.size()},
+                   {"complete", results_.complete()},
+                   {"columns", Json::parse(to_json(results_.fingerprint.columns))},
+                   {"datasets", datasets}};
+  if (!results_.summary.own.columns.empty())
+    manifest["own"] = Json::parse(to_json(results_.summary.own.columns));
   file_.write_text("manifest", manifest.dump());
   describe(file_, "manifest", "JSON: what the file is to hold, with SHA-256 of each dataset");
 }

@@ -51,6 +51,7 @@ void write_summary(Hdf5File& file, const Summary& summary, const Noted& noted) {
   file.set_attribute("summary", "proportion_interval", summary.proportion_interval);
   file.set_attribute("summary", "intervals", summary.intervals);
   if (!summary.warnings.empty()) file.set_attribute("summary", "warnings", summary.warnings);
+  if (!summary.left_out.empty()) file.set_attribute("summary", "left_out", summary.left_out);
   for (const SummaryTable& table : summary.tables) {
     const std::string group = "summary/" + table.name;
     file.make_group(group);

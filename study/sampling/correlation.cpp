@@ -1,26 +1,11 @@
 #include "study/sampling/correlation.h"
 
-#include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "core/units.h"
 #include "study/sampling/law.h"
 
 namespace asdic::detail::study {
-namespace {
-
-/// Φ⁻¹ by the smaller tail.
-double score(double u) noexcept {
-  return u < 0.5 ? -normal_upper_quantile(u) : normal_upper_quantile(1.0 - u);
-}
-
-/// Φ, never 0 or 1.
-double share(double score) noexcept {
-  return std::clamp(0.5 * std::erfc(-score / std::numbers::sqrt2), 0x1p-54, 1.0 - 0x1p-53);
-}
-
-}  // namespace
 
 Copula::Copula(const std::vector<std::vector<double>>& matrix) {
   for (std::size_t i = 0; i < matrix.size(); ++i) {
@@ -47,8 +32,8 @@ void Copula::apply(std::span<double> u) const noexcept {
   // From the last one: those before it are still independent.
   for (std::size_t i = lower_.size(); i-- > 1;) {
     double z = 0.0;
-    for (std::size_t j = 0; j <= i; ++j) z += lower_[i][j] * score(u[j]);
-    u[i] = share(z);
+    for (std::size_t j = 0; j <= i; ++j) z += lower_[i][j] * normal_score(u[j]);
+    u[i] = normal_share(z);
   }
 }
 

@@ -148,6 +148,14 @@ double normal_upper_quantile(double p) noexcept {
   return z;
 }
 
+double normal_score(double u) noexcept {
+  return u < 0.5 ? -normal_upper_quantile(u) : normal_upper_quantile(1.0 - u);
+}
+
+double normal_share(double score) noexcept {
+  return std::clamp(0.5 * std::erfc(-score / std::numbers::sqrt2), 0x1p-54, 1.0 - 0x1p-53);
+}
+
 CutLaw::CutLaw(ContinuousLaw law, double low, double high) noexcept
     : law_(law), low_(low), high_(high), at_low_(tails(law, low)), at_high_(tails(law, high)) {}
 

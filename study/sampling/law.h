@@ -75,5 +75,9 @@ class CutLaw {
 
 /// Inverse of the standard normal distribution by its smaller tail. \param p  P(Z > z), 0 < p ≤ ½
 [[nodiscard]] double normal_upper_quantile(double p) noexcept;
+/// Φ⁻¹(u), by the smaller tail.
+[[nodiscard]] double normal_score(double u) noexcept;
+/// Φ(z), never 0 or 1.
+[[nodiscard]] double normal_share(double score) noexcept;
 
 }  // namespace asdic::detail::study

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "core/error.h"
@@ -26,6 +27,7 @@ NumberAtKey number_at(const Variable& v, std::size_t key) {
 // What each law takes and makes.
 
 std::size_t dimensions(const NumberLaw&) { return 1; }
+std::size_t dimensions(const ParametricLaw&) { return 1; }
 std::size_t dimensions(const ChoiceLaw& law) { return law.kind == ChoiceLaw::Kind::weighted; }
 std::size_t dimensions(const TrackLaw& law) { return law.speed ? 5 : 3; }
 std::size_t dimensions(const ModesLaw& law) { return law.modes.size(); }
@@ -111,7 +113,9 @@ std::vector<InputColumn> columns(const NumberLaw& law, const Variable& v) {
 std::vector<InputColumn> columns(const ChoiceLaw& law, const Variable& v) {
   std::vector<InputColumn> made;
   for (std::size_t k = 0; k < law.labels.size(); ++k)  // a choice among names is a number of it
-    made.push_back({.name = law.by_row ? v.name + '_' + last_name(v.keys[k]) : v.name,
+    made.push_back({.name = !law.names.empty() ? law.names[k]
+                            : law.by_row       ? v.name + '_' + last_name(v.keys[k])
+                                               : v.name,
                     .unit = law.labels[k].empty() ? number_at(v, k).unit : "1",
                     .meaning = number_at(v, k).meaning,
                     .labels = law.labels[k]});
@@ -159,8 +163,9 @@ void append_columns(const DataRows& data, const Variable& v, std::vector<InputCo
         std::minmax_element(data.columns[c].begin(), data.columns[c].end());
     const bool keyed = c < v.keys.size();
     made.push_back({.name = data.columns.size() == 1 ? v.name : v.name + '_' + data.names[c],
-                    .unit = keyed ? number_at(v, c).unit : "1",
+                    .unit = keyed && data.labels_of(c).empty() ? number_at(v, c).unit : "1",
                     .meaning = keyed ? number_at(v, c).meaning : data.names[c] + " of the data",
+                    .labels = data.labels_of(c),
                     .ends = {*least, *greatest}});
   }
 }
@@ -190,6 +195,21 @@ std::vector<InputColumn> columns(const TimeSeriesLaw& law, const Variable& v) {
   add("speed", "m/s", "horizontal speed");
   add("course_deg", "degrees", "course, true");
   return made;
+}
+
+std::vector<InputColumn> columns(const ParametricLaw& law, const Variable& v) {
+  Span ends{-infinity, infinity};  // as far as they are the same for all rows
+  for (const ParametricLaw::Parameter& parameter : law.parameters) {
+    if (parameter.formula) continue;
+    const bool least = parameter.name == "min" || parameter.name == "low";
+    if (least) ends.low = std::max(ends.low, parameter.number);
+    if (parameter.name == "max" || parameter.name == "high")
+      ends.high = std::min(ends.high, parameter.number);
+  }
+  return {{.name = v.name,
+           .unit = number_at(v, 0).unit,
+           .meaning = number_at(v, 0).meaning,
+           .ends = ends}};
 }
 
 std::vector<InputColumn> columns(const ExpressionLaw&, const Variable& v) {
@@ -282,6 +302,24 @@ void values_of(const TimeSeriesLaw& law, std::span<const double> u, std::span<co
   values.push_back(course < 0.0 ? course + 360.0 : course);
 }
 
+std::optional<CutLaw> law_given(const ParametricLaw& law, std::span<const double> given) {
+  std::vector<NamedNumber> parameters;
+  for (const ParametricLaw::Parameter& parameter : law.parameters) {
+    std::vector<double> named;
+    for (const std::size_t name : parameter.names) named.push_back(given[name]);
+    parameters.push_back(
+        {parameter.name, parameter.formula ? parameter.formula->at(named) : parameter.number});
+  }
+  return law_of(law.kind, parameters);
+}
+
+/// Not a number where the parameters make no law: a fault of the realisation, told by write().
+void values_of(const ParametricLaw& law, std::span<const double> u, std::span<const double> given,
+               std::size_t, std::vector<double>& values) {
+  const std::optional<CutLaw> own = law_given(law, given);
+  values.push_back(own ? own->quantile(u[0]) : std::nan(""));
+}
+
 void values_of(const ExpressionLaw& law, std::span<const double>, std::span<const double> given,
                std::size_t, std::vector<double>& values) {
   std::vector<double> named;
@@ -350,9 +388,16 @@ void write_number(const Variable& v, std::size_t key, double x, TomlValue& scena
   value_at(scenario, v.keys[key], v.origin) = std::move(value);
 }
 
-void write(const TableLaw&, const Variable& v, std::span<const double> values, std::size_t,
+void write(const TableLaw& law, const Variable& v, std::span<const double> values, std::size_t,
            TomlValue& scenario) {
-  for (std::size_t k = 0; k < v.keys.size(); ++k) write_number(v, k, values[k], scenario);
+  for (std::size_t k = 0; k < v.keys.size(); ++k) {
+    const std::vector<std::string>& labels = law.data->labels_of(k);
+    if (labels.empty())
+      write_number(v, k, values[k], scenario);
+    else
+      value_at(scenario, v.keys[k], v.origin) = {
+          .data = labels.at(static_cast<std::size_t>(values[k])), .origin = v.origin};
+  }
 }
 
 void write(const TimeSeriesLaw& law, const Variable& v, std::span<const double> values, std::size_t,
@@ -377,6 +422,22 @@ void write(const ExpressionLaw& law, const Variable& v, std::span<const double> 
                       .got = to_text(x) + " of " + in_quotes(law.expression.text()),
                       .expected = "a finite number"});
   for (std::size_t k = 0; k < v.keys.size(); ++k) write_number(v, k, x, scenario);
+}
+
+void write(const ParametricLaw& law, const Variable& v, std::span<const double> values, std::size_t,
+           TomlValue& scenario) {
+  if (!std::isfinite(values[0])) {
+    std::string formulae;
+    for (const ParametricLaw::Parameter& parameter : law.parameters)
+      if (parameter.formula)
+        formulae += (formulae.empty() ? "" : ", ") + parameter.name + " = " +
+                    in_quotes(parameter.formula->text());
+    throw InputError(
+        {.where = v.origin + ": vary." + v.name,
+         .got = "what makes no law: " + formulae,
+         .expected = "parameters of a law " + in_quotes(law.kind) + ", whatever others draw"});
+  }
+  for (std::size_t k = 0; k < v.keys.size(); ++k) write_number(v, k, values[0], scenario);
 }
 
 void write(const ConditionalLaw& law, const Variable& v, std::span<const double> values,
@@ -420,7 +481,64 @@ bool is_continuous(const AnyLaw& law) {
   if (const auto* conditional = std::get_if<ConditionalLaw>(&law))
     return std::all_of(conditional->branches.begin(), conditional->branches.end(),
                        [](const Branch& branch) { return is_continuous(branch.law); });
-  return std::holds_alternative<NumberLaw>(law);
+  return std::holds_alternative<NumberLaw>(law) || std::holds_alternative<ParametricLaw>(law);
+}
+
+bool has_formulae(const AnyLaw& law) {
+  if (const auto* conditional = std::get_if<ConditionalLaw>(&law))
+    return std::any_of(conditional->branches.begin(), conditional->branches.end(),
+                       [](const Branch& branch) { return has_formulae(branch.law); });
+  return std::holds_alternative<ParametricLaw>(law);
+}
+
+namespace {
+
+double density_of(const AnyLaw& law, std::span<const double> given, double x) {
+  if (const auto* number = std::get_if<NumberLaw>(&law)) return number->law.density(x);
+  if (const auto* parametric = std::get_if<ParametricLaw>(&law)) {
+    const std::optional<CutLaw> own = law_given(*parametric, given);
+    return own ? own->density(x) : std::nan("");
+  }
+  if (const auto* conditional = std::get_if<ConditionalLaw>(&law))
+    return density_of(conditional->branches[branch_at(*conditional, given[conditional->given])].law,
+                      given, x);
+  return std::nan("");
+}
+
+}  // namespace
+
+double density_given(const Variable& variable, std::span<const double> given, double x) {
+  return density_of(variable.law, given, x);
+}
+
+std::optional<CutLaw> law_of(std::string_view kind, std::span<const NamedNumber> parameters) {
+  const auto at = [&](std::string_view name, double otherwise = std::nan("")) {
+    for (const NamedNumber& one : parameters)
+      if (one.name == name) return one.number;
+    return otherwise;
+  };
+  const auto has = [&](std::string_view name) { return !std::isnan(at(name)); };
+  for (const NamedNumber& one : parameters)
+    if (!std::isfinite(one.number)) return std::nullopt;
+  const double low = at("low"), high = at("high"), mean = at("mean"), scale = at("scale");
+  std::optional<ContinuousLaw> law;
+  if (kind == "uniform" && low < high) law = Uniform{low, high};
+  if (kind == "normal" && at("deviation") > 0.0 && has("mean")) law = Normal{mean, at("deviation")};
+  if (kind == "log_normal" && at("median") > 0.0 && at("log_deviation") > 0.0)
+    law = LogNormal{at("median"), at("log_deviation")};
+  if (kind == "triangular" && low < high && low <= at("mode") && at("mode") <= high)
+    law = Triangular{low, at("mode"), high};
+  if (kind == "rayleigh" && mean > 0.0) law = Weibull::rayleigh(mean);
+  if (kind == "rayleigh" && scale > 0.0) law = Weibull{2.0, std::numbers::sqrt2 * scale};
+  const double shape = at("shape");
+  if (kind == "weibull" && shape >= 0.1 && shape <= 100.0) {
+    if (mean > 0.0) law = Weibull::of_mean(shape, mean);
+    if (scale > 0.0) law = Weibull{shape, scale};
+  }
+  const double least = at("min", -infinity), most = at("max", infinity);
+  if (!law || !(least < most)) return std::nullopt;
+  const CutLaw cut(*law, least, most);
+  return cut.share() > 0.0 ? std::optional(cut) : std::nullopt;
 }
 
 bool places(const AnyLaw& law) {

@@ -12,6 +12,7 @@
 #include "io/text/toml_value.h"
 #include "study/expression/expression.h"
 #include "study/sampling/law.h"
+#include "study/sampling/proposal.h"
 
 namespace asdic::detail::study {
 
@@ -19,6 +20,28 @@ namespace asdic::detail::study {
 struct NumberLaw {
   CutLaw law;
 };
+
+/// A continuous law some of whose parameters are formulae of what others draw, the same at all
+/// keys: given them, it is a law as any other.
+struct ParametricLaw {
+  struct Parameter {
+    std::string name;                     ///< "mean", "max"
+    double number = 0.0;                  ///< …
+    std::optional<Expression> formula{};  ///< … unless it is one
+    std::vector<std::size_t> names{};     ///< [formula names] which of Variable::given
+  };
+  std::string kind;  ///< "rayleigh"
+  std::vector<Parameter> parameters{};
+};
+
+/// A law by its name in the study file and its parameters; nothing where they make none (a
+/// deviation that is not above 0).
+struct NamedNumber {
+  std::string_view name;
+  double number = 0.0;
+};
+[[nodiscard]] std::optional<CutLaw> law_of(std::string_view kind,
+                                           std::span<const NamedNumber> parameters);
 
 /// One of several values, each of any kind a scenario knows.
 struct ChoiceLaw {
@@ -31,6 +54,7 @@ struct ChoiceLaw {
   std::vector<double> cumulative;                ///< [choices] of the weights, the last one 1
   bool by_row = false;                           ///< keys have values of their own, and columns
   std::vector<std::vector<std::string>> labels;  ///< [columns][choices]; [columns][0] of numbers
+  std::vector<std::string> names{};  ///< [columns] where they are not called after their keys
 };
 
 /// Where something starts and how it goes: `position` and `velocity` below its key. Drawn evenly in
@@ -63,6 +87,12 @@ struct ExpressionLaw {
 struct DataRows {
   std::vector<std::string> names;            ///< [columns] what they are called behind the input's
   std::vector<std::vector<double>> columns;  ///< [columns][rows]
+  /// [columns] of texts, which rows count into; {} of numbers, as where there are none at all
+  std::vector<std::vector<std::string>> labels{};
+  [[nodiscard]] const std::vector<std::string>& labels_of(std::size_t column) const {
+    static const std::vector<std::string> none;
+    return column < labels.size() ? labels[column] : none;
+  }
   [[nodiscard]] std::size_t rows() const { return columns.empty() ? 0 : columns[0].size(); }
 };
 
@@ -107,7 +137,7 @@ struct ConditionalLaw {
 };
 
 using AnyLaw = std::variant<NumberLaw, ChoiceLaw, TrackLaw, ModesLaw, TableLaw, TimeSeriesLaw,
-                            ExpressionLaw, ConditionalLaw>;
+                            ExpressionLaw, ParametricLaw, ConditionalLaw>;
 
 struct Branch {
   std::string name;  ///< "winter", "from 5 to 10"
@@ -134,6 +164,7 @@ struct Variable {
   std::string text = {};                ///< the law, as the study file has it
   std::string digest = {};              ///< of files that its law was read from, for the identity
   std::vector<std::string> notes = {};  ///< what the user should know of them
+  CoordinateDraw proposal = {};         ///< from what its coordinate is drawn instead
 };
 
 /// A whole or real number as such; none for anything else.
@@ -162,6 +193,12 @@ struct Variable {
 /// The values of its columns. \param choice  as chosen
 void append_values(const Variable& variable, std::span<const double> u,
                    std::span<const double> given, std::size_t choice, std::vector<double>& values);
+/// Whether parameters of its law, or of one for a case, are formulae.
+[[nodiscard]] bool has_formulae(const AnyLaw& law);
+/// dP(X ≤ x)/dx of its column given what others drew; NaN where its law has none.
+/// \param given  [Variable::given]
+[[nodiscard]] double density_given(const Variable& variable, std::span<const double> given,
+                                   double x);
 /// Writes them where its keys lead. \param values  [columns] \throws InputError
 void apply(const Variable& variable, std::span<const double> values, std::size_t choice,
            TomlValue& scenario);

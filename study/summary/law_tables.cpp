@@ -170,6 +170,7 @@ struct Tables {
     return all;
   }
   std::vector<LawTable> of(const ExpressionLaw&) const { return {}; }
+  std::vector<LawTable> of(const ParametricLaw&) const { return {}; }
   std::vector<LawTable> of(const ConditionalLaw&) const { return {}; }
 };
 
@@ -211,6 +212,7 @@ std::vector<LawTable> law_tables(const Study& study) {
         Study other = study;  // the same laws, other draws
         if (!on_grid) other.design = Design::random;
         other.seed = ~study.seed;
+        other.proposal = {};  // the laws, whatever rows are drawn from
         const Sampler sampler(other);
         drawn.resize(sampler.columns().size());
         for (std::uint64_t i = 0; i < draws; ++i) {
@@ -228,6 +230,31 @@ std::vector<LawTable> law_tables(const Study& study) {
     }
     for (LawTable& table : own) all.push_back(std::move(table));
     column += columns.size();
+  }
+  return all;
+}
+
+std::vector<RowDensity> row_densities(const Study& study, const Table& table) {
+  std::vector<RowDensity> all;
+  const auto place = [&](const std::string& name) {
+    return static_cast<std::size_t>(
+        std::find_if(table.columns.begin(), table.columns.end(),
+                     [&](const Column& column) { return column.name == name; }) -
+        table.columns.begin());
+  };
+  for (const Variable& variable : study.variables) {
+    if (!has_formulae(variable.law)) continue;
+    const InputColumn column = input_columns(variable).front();
+    std::vector<std::size_t> given;
+    for (const std::string& name : variable.given) given.push_back(place(name));
+    const std::size_t own = place(column.name);
+    RowDensity made{.column = column.name, .unit = column.unit, .density = {}};
+    std::vector<double> drawn(given.size());
+    for (std::size_t row = 0; row < table.index.size(); ++row) {
+      for (std::size_t g = 0; g < given.size(); ++g) drawn[g] = table.values[given[g]][row];
+      made.density.push_back(density_given(variable, drawn, table.values[own][row]));
+    }
+    all.push_back(std::move(made));
   }
   return all;
 }

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "study/plan/study.h"
+#include "study/summary/table.h"
 
 namespace asdic::detail::study {
 
@@ -21,5 +22,14 @@ struct LawTable {
 /// Those of all inputs, in the order of their columns; behind one whose law depends on another
 /// input, those of its cases.
 [[nodiscard]] std::vector<LawTable> law_tables(const Study& study);
+
+/// Of an input whose law depends on others by formulae: its density at what each row drew, given
+/// what that row's others drew.
+struct RowDensity {
+  std::string column, unit;
+  std::vector<double> density;  ///< [rows]
+};
+/// \param table  its columns are found by their names
+[[nodiscard]] std::vector<RowDensity> row_densities(const Study& study, const Table& table);
 
 }  // namespace asdic::detail::study

@@ -5,11 +5,15 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <span>
+#include <utility>
 
 #include "core/error.h"
 #include "core/text.h"
 #include "study/summary/intervals.h"
+#include "study/summary/own_columns.h"
 #include "study/summary/summary_parts.h"
+#include "study/summary/weighted_mean.h"
 
 namespace asdic::detail::study {
 namespace {
@@ -41,6 +45,15 @@ std::string twice(const std::vector<Column>& columns) {
   return "";
 }
 
+/// The least value with a share p of the weights at or below it. \param sorted  values and weights
+double weighted_quantile(std::span<const std::pair<double, double>> sorted, double p) {
+  double sum = 0.0, before = 0.0;
+  for (const auto& [value, weight] : sorted) sum += weight;
+  for (const auto& [value, weight] : sorted)
+    if ((before += weight) >= p * sum) return value;
+  return sorted.back().first;
+}
+
 /// Where an entry of `by` stands: "study.toml:12: summary.by[1]".
 std::string place_of(const Study& study, std::size_t entry) {
   const TomlValue* summary = study.document.find("summary");
@@ -54,7 +67,7 @@ std::string place_of(const Study& study, std::size_t entry) {
 }  // namespace
 
 void check_summary_names(const Study& study) {
-  const std::vector<Column> all = columns(study);
+  const std::vector<Column> all = answer_columns(study);
   if (const std::string name = twice(all); !name.empty())
     throw InputError({.where = study.path.string() + ": [vary] and [measure]",
                       .got = "two columns \"" + name + "\"",
@@ -84,19 +97,25 @@ void check_summary_names(const Study& study) {
 }
 
 bool is_proportion(const Column& column) noexcept {
+  if (!column.formula.empty()) return column.event;
   const auto is = [&](std::string_view name) {
     return column.name == name || column.name.starts_with(std::string(name) + '_');
   };
-  return column.role == Column::Role::measure && (is("detected") || is("false_alarm"));
+  return column.role == Column::Role::measure &&
+         (is("detected") || is("false_alarm") || column.name == rare_event_column);
 }
 
 std::string proportion_name(const Column& column) {
+  if (!column.formula.empty()) return "p_" + column.name;
+  if (column.name == rare_event_column) return rare_event_probability;
   const std::string_view word = column.name.starts_with("detected") ? "detected" : "false_alarm";
   return (word == "detected" ? "pd" : "pfa") + column.name.substr(word.size());
 }
 
 std::optional<std::size_t> first_question(std::span<const Column> columns) noexcept {
   std::optional<std::size_t> first;
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    if (columns[c].name == rare_event_column) return c;
   for (std::size_t c = 0; c < columns.size(); ++c) {
     if (is_proportion(columns[c])) return c;
     if (columns[c].role == Column::Role::measure && !first) first = c;
@@ -116,6 +135,19 @@ std::string quantile_name(double probability) {
 
 bool counts(const Table& table, std::size_t row, std::size_t column) noexcept {
   return table.valid[row] != 0 && std::isfinite(table.values[column][row]);
+}
+
+bool is_weighted(const Table& table) noexcept {
+  return std::any_of(table.columns.begin(), table.columns.end(),
+                     [](const Column& column) { return column.role == Column::Role::weight; });
+}
+
+std::vector<double> weights_of(const Table& table) {
+  std::vector<double> weights;
+  for (std::size_t c = 0; c < table.columns.size(); ++c)
+    if (table.columns[c].name == log_weight_column)
+      for (const double log_weight : table.values[c]) weights.push_back(std::exp(log_weight));
+  return weights;
 }
 
 SummaryTable statistics_table(const Study& study, const Table& table) {
@@ -151,41 +183,63 @@ SummaryTable statistics_table(const Study& study, const Table& table) {
     column("pfa_high", "1", "confidence interval (Clopper & Pearson)");
     column("pfa_set", "1", "false-alarm probability that is set");
   }
+  const std::vector<double> weights = weights_of(table);
+  const bool weighted = !weights.empty();
+  if (weighted) {
+    column("effective", "1", "(sum of weights)^2 over sum of their squares");
+    column("effective_of_event", "1", "the same of the rows in which the rarer outcome happened");
+    column("largest_share", "1", "of the rarer outcome's probability that one row alone has");
+  }
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    ClusteredMean moments(clusters);
+    if (table.columns[c].role == Column::Role::weight) continue;
+    const bool proportion = is_proportion(table.columns[c]);
+    RowMean moments(clusters, weighted, WeightedMean::Of::all_rows);
     std::vector<double> sorted;
-    for (std::size_t row = 0; row < table.index.size(); ++row)
-      if (counts(table, row, c)) {
-        moments.add(table.index[row], table.values[c][row]);
-        sorted.push_back(table.values[c][row]);
+    std::vector<std::pair<double, double>> with_weights;
+    for (std::size_t row = 0; row < table.index.size(); ++row) {
+      const double weight = weighted ? weights[row] : 1.0;
+      if (!counts(table, row, c)) {
+        moments.leave_out(table.index[row], weight);
+        continue;
       }
+      moments.add(table.index[row], table.values[c][row], weight);
+      sorted.push_back(table.values[c][row]);
+      if (weighted) with_weights.emplace_back(table.values[c][row], weight);
+    }
     std::sort(sorted.begin(), sorted.end());
+    std::sort(with_weights.begin(), with_weights.end());
     const double none = std::nan("");
-    const Interval interval = is_proportion(table.columns[c])
-                                  ? moments.proportion(plan.interval, plan.confidence)
-                                  : moments.mean_interval(plan.confidence);
+    const Interval interval = moments.interval(proportion, plan.interval, plan.confidence);
     made.columns[0].labels.push_back(table.columns[c].name);
-    std::vector<double> row{static_cast<double>(c),
+    std::vector<double> row{static_cast<double>(made.columns[0].labels.size() - 1),
                             moments.count(),
-                            moments.mean(),
+                            moments.value(proportion),
                             moments.deviation(),
                             interval.low,
                             interval.high,
                             sorted.empty() ? none : sorted.front(),
                             sorted.empty() ? none : sorted.back()};
     for (const double p : plan.quantiles)
-      row.push_back(sorted.empty() ? none : sample_quantile(sorted, p));
+      row.push_back(sorted.empty() ? none
+                    : weighted     ? weighted_quantile(with_weights, p)
+                                   : sample_quantile(sorted, p));
     if (set) {
-      const bool alarms =
-          is_proportion(table.columns[c]) && table.columns[c].name.starts_with("false_alarm");
+      const bool alarms = proportion && table.columns[c].name.starts_with("false_alarm");
       const double n = moments.count();
       const Interval found =
-          clopper_pearson(n > 0.0 ? std::round(moments.mean() * n) : 0.0, n, plan.confidence);
+          weighted ? interval
+                   : clopper_pearson(n > 0.0 ? std::round(moments.value(proportion) * n) : 0.0, n,
+                                     plan.confidence);
       if (alarms)
-        row.insert(row.end(), {moments.mean(), found.low, found.high,
+        row.insert(row.end(), {moments.value(proportion), found.low, found.high,
                                study.measure.false_alarm_probability()});
       else
         row.insert(row.end(), 4, none);
+    }
+    if (weighted) {
+      const WeightedMean& weighed = moments.weighted();
+      row.insert(row.end(), {weighed.effective(), proportion ? weighed.effective_of_event() : none,
+                             proportion ? weighed.largest_share() : none});
     }
     for (std::size_t i = 0; i < row.size(); ++i) made.values[i].push_back(row[i]);
   }
@@ -205,6 +259,15 @@ std::string_view name_of(ProportionInterval interval) {
 /// How intervals of means and proportions are had: of `what`, in words.
 std::string method_of(const Study& study) {
   const Clusters clusters = clusters_of(study);
+  if (is_weighted(study))
+    return "of weighted rows: proportions by Fay and Feuer's gamma interval, means by the normal "
+           "distribution and linearisation, Student's t, " +
+           (clusters.kind == Clusters::Kind::replicates
+                ? "from the scatter between " + std::to_string(clusters.size) +
+                      " independent scrambles"
+            : study.design == Design::random ? std::string("of independent rows")
+                                             : std::string("of rows taken for independent (rather "
+                                                           "too wide)"));
   const std::string proportions(name_of(study.summary.interval));
   if (clusters.kind == Clusters::Kind::rows)
     return "proportions by " + proportions + ", means by the normal distribution, of " +
@@ -243,12 +306,28 @@ std::string unexplained_note(const Study& study, const Table& table,
   return "";
 }
 
+/// Tables that know no weights, and so are not made; "": none is missing.
+std::string left_out_of(const Study& study, const Table& table) {
+  const bool roc = study.summary.roc &&
+                   std::any_of(table.columns.begin(), table.columns.end(),
+                               [](const Column& c) { return c.name.starts_with("snr_absent_db"); });
+  if (!roc && !study.summary.sensitivity) return "";
+  const std::string tables = !roc                        ? "sensitivity is"
+                             : study.summary.sensitivity ? "roc, roc_area and sensitivity are"
+                                                         : "roc and roc_area are";
+  return tables + " left out: rows are drawn from a proposal, and such tables know no weights";
+}
+
 }  // namespace
 
-Summary summary_of(const Study& study, const Table& table) {
+namespace {
+
+/// \param table  with its own columns
+Summary summary_of_answers(const Study& study, const Table& table) {
   const SummaryPlan& plan = study.summary;
   std::string intervals = "as of independent draws";
-  if (clusters_of(study).kind != Clusters::Kind::rows)
+  const bool weighted = is_weighted(study);
+  if (clusters_of(study).kind != Clusters::Kind::rows || weighted)
     intervals = method_of(study);
   else if (study.design != Design::random)
     intervals += ": of this design, " + std::string(name(study.design)) +
@@ -267,7 +346,7 @@ Summary summary_of(const Study& study, const Table& table) {
   add({statistics_table(study, table)}, method);
   for (const std::vector<SummaryAxis>& axes : plan.by) add(tables_by(study, axes, table), method);
   const bool blocks = study.design == Design::saltelli;
-  if (plan.roc)
+  if (plan.roc && !weighted)
     add(roc_tables(plan, blocks ? independent_rows(study, table) : table),
         "proportions by " + std::string(name_of(plan.interval)) +
             ", areas by Hanley and McNeil, of " +
@@ -277,7 +356,19 @@ Summary summary_of(const Study& study, const Table& table) {
   add(cell_tables(study, table), "docs/theory/studies.md, false-alarm rates");
   if (plan.convergence) add(convergence_table(study, table), method);
   made.laws = law_tables(study);
+  made.densities = row_densities(study, table);
   made.warnings = rate_warnings(study, made.tables);
+  if (study.measure.wants("localisation_ellipse") && is_weighted(table))
+    made.warnings.emplace_back(
+        "localisation_ellipse: no ellipses of errors of place: they are of rows that count alike, "
+        "and these have weights");
+  if (weighted) {
+    add(drawn_from_table(study, table), "none");
+    for (std::string& one : weight_warnings(study, table)) made.warnings.push_back(std::move(one));
+    made.left_out = left_out_of(study, table);
+    if (!made.left_out.empty()) made.notes.push_back(made.left_out);
+    return made;
+  }
   if (!plan.sensitivity) return made;
   std::vector<SummaryTable> sensitivity =
       blocks ? saltelli_tables(study, table) : sensitivity_table(study, table);
@@ -287,11 +378,28 @@ Summary summary_of(const Study& study, const Table& table) {
   return made;
 }
 
+}  // namespace
+
+Summary summary_of(const Study& study, const Table& rows) {
+  if (study.summary.own.empty()) return summary_of_answers(study, rows);
+  const Table table = with_own(study, rows);
+  Summary made = summary_of_answers(study, table);
+  const auto first = static_cast<std::ptrdiff_t>(table.columns.size() - study.summary.own.size());
+  made.own.columns.assign(table.columns.begin() + first, table.columns.end());
+  made.own.values.assign(table.values.begin() + first, table.values.end());
+  return made;
+}
+
 RunningEstimate::RunningEstimate(const Study& study)
-    : level_(study.summary.confidence), mean_(clusters_of(study)) {
-  const std::vector<Column> all = columns(study);
+    : level_(study.summary.confidence),
+      mean_(clusters_of(study), is_weighted(study), WeightedMean::Of::all_rows),
+      own_(study) {
+  const std::vector<Column> all = answer_columns(study);
   const std::optional<std::size_t> question = first_question(all);
   column_ = question.value_or(all.size());
+  weight_ = all.size();
+  for (std::size_t c = 0; c < all.size(); ++c)
+    if (all[c].name == log_weight_column) weight_ = c;
   interval_ = study.summary.interval;
   if (!question) return;
   proportion_ = is_proportion(all[column_]);
@@ -300,21 +408,29 @@ RunningEstimate::RunningEstimate(const Study& study)
 }
 
 void RunningEstimate::add(const Row& row) {
-  if (!row.valid || column_ >= row.values.size()) return;
-  if (!std::isfinite(row.values[column_])) {
-    ++left_out_;
+  if (own_.empty()) return take(row, row.values);
+  std::vector<double> values = row.values;
+  own_.append(values, row.valid);
+  take(row, values);
+}
+
+void RunningEstimate::take(const Row& row, const std::vector<double>& values) {
+  if (column_ >= values.size()) return;
+  const double weight = weight_ < values.size() ? std::exp(values[weight_]) : 1.0;
+  if (!row.valid || !std::isfinite(values[column_])) {
+    if (row.valid) ++left_out_;
+    mean_.leave_out(row.index, weight);
     return;
   }
-  mean_.add(row.index, row.values[column_]);
+  mean_.add(row.index, values[column_], weight);
 }
 
 std::optional<Estimate> RunningEstimate::estimate() const {
   if (mean_.count() < 2.0) return std::nullopt;
-  const Interval interval =
-      proportion_ ? mean_.proportion(interval_, level_) : mean_.mean_interval(level_);
+  const Interval interval = mean_.interval(proportion_, interval_, level_);
   return Estimate{.name = name_,
                   .unit = unit_,
-                  .value = mean_.mean(),
+                  .value = mean_.value(proportion_),
                   .low = interval.low,
                   .high = interval.high,
                   .level = level_,

@@ -5,19 +5,11 @@
 
 #include "study/measures/cell_counts.h"
 #include "study/measures/realisation.h"
-#include "study/summary/clustered_mean.h"
 #include "study/summary/law_tables.h"
+#include "study/summary/own_columns.h"
+#include "study/summary/weighted_mean.h"
 
 namespace asdic::detail::study {
-
-/// Rows of a study, by column; sorted by index.
-struct Table {
-  std::vector<Column> columns;
-  std::vector<std::uint64_t> index;         ///< [rows]
-  std::vector<std::uint8_t> valid;          ///< [rows]
-  std::vector<std::vector<double>> values;  ///< [columns][rows]
-  CellSums cells{};                         ///< of all these rows, where cells are counted
-};
 
 /// A table of the summary: columns of equal length ("pd_by_range": centre, count, pd, low, high).
 struct SummaryTable {
@@ -41,6 +33,9 @@ struct Summary {
   std::vector<LawTable> laws{};                ///< of the inputs; they are not of the rows
   std::vector<std::string> notes{};            ///< what the user should know of the answers
   std::vector<std::string> warnings{};         ///< of what was found, a sentence each
+  std::string left_out{};                      ///< which tables are not made, and why
+  std::vector<RowDensity> densities{};         ///< of inputs whose laws have formulae
+  Table own{};                                 ///< the columns of [summary.own] alone
 };
 [[nodiscard]] Summary summary_of(const Study& study, const Table& table);
 
@@ -56,6 +51,8 @@ class RunningEstimate {
  public:
   explicit RunningEstimate(const Study& study);
   void add(const Row& row);
+  /// The same, where the values of its answer_columns() are known.
+  void take(const Row& row, const std::vector<double>& values);
   [[nodiscard]] std::optional<Estimate> estimate() const;  ///< none before two valid rows
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
   [[nodiscard]] const Clusters& clusters() const noexcept { return mean_.clusters(); }
@@ -64,12 +61,13 @@ class RunningEstimate {
 
  private:
   std::string name_, unit_;
-  std::size_t column_ = 0;
+  std::size_t column_ = 0, weight_ = 0;
   bool proportion_ = false;
   ProportionInterval interval_ = ProportionInterval::wilson;
   double level_ = 0.95;
   std::uint64_t left_out_ = 0;
-  ClusteredMean mean_;
+  RowMean mean_;
+  OwnValues own_;
 };
 
 }  // namespace asdic::detail::study

@@ -5,6 +5,7 @@
 #include "study/summary/axis.h"
 #include "study/summary/intervals.h"
 #include "study/summary/summary_parts.h"
+#include "study/summary/weighted_mean.h"
 
 namespace asdic::detail::study {
 namespace {
@@ -33,6 +34,15 @@ std::vector<SummaryTable> tables_by(const Study& study, const std::vector<Summar
     along += (axes.size() > 1 ? " and " : " against ") + axis.column;
   }
   const Cells cells(std::move(axes), table);
+  const std::vector<double> weights = weights_of(table);
+  const bool weighted = !weights.empty();
+  const auto mean_of = [&](std::size_t cell, std::size_t column) {
+    RowMean mean(clusters, weighted);
+    for (const std::size_t row : cells.rows(cell))
+      if (counts(table, row, column))
+        mean.add(table.index[row], table.values[column][row], weighted ? weights[row] : 1.0);
+    return mean;
+  };
 
   std::vector<SummaryTable> all = ellipse_tables(study, cells, suffix, along, table);
   std::vector<std::size_t> others;
@@ -58,27 +68,40 @@ std::vector<SummaryTable> tables_by(const Study& study, const std::vector<Summar
       add_column(made, probability, "pfa_high", "confidence interval (Clopper & Pearson)");
       add_column(made, probability, "pfa_set", "false-alarm probability that is set");
     }
+    if (weighted) {
+      add_column(made, probability, "effective",
+                 "(sum of weights)^2 over sum of their squares, of the rows in which the rarer "
+                 "outcome happened");
+      add_column(made, probability, "largest_share",
+                 "of the rarer outcome's probability that one row alone has");
+    }
     for (std::size_t cell = 0; cell < cells.size(); ++cell) {
       double hits = 0.0;
-      ClusteredMean share(clusters);
       for (const std::size_t row : cells.rows(cell))
-        if (counts(table, row, c)) {
-          share.add(table.index[row], table.values[c][row]);
-          hits += table.values[c][row];
-        }
+        if (counts(table, row, c)) hits += table.values[c][row];
+      const RowMean share = mean_of(cell, c);
       cells.start_row(made, cell, share.count());
-      const Interval interval = share.proportion(plan.interval, plan.confidence);
-      put(made, {hits, hits / share.count(), interval.low, interval.high});
-      if (!alarms) continue;
-      double known = 0.0, rang = 0.0;
-      for (const std::size_t row : cells.rows(cell))
-        if (counts(table, row, *alarms)) {
-          known += 1.0;
-          rang += table.values[*alarms][row];
-        }
-      const Interval found = clopper_pearson(rang, known, plan.confidence);
+      const Interval interval = share.interval(true, plan.interval, plan.confidence);
       put(made,
-          {known, rang / known, found.low, found.high, study.measure.false_alarm_probability()});
+          {hits, weighted ? share.value(true) : hits / share.count(), interval.low, interval.high});
+      if (alarms && weighted) {
+        const RowMean rate = mean_of(cell, *alarms);
+        const Interval found = rate.interval(true, plan.interval, plan.confidence);
+        put(made, {rate.count(), rate.value(true), found.low, found.high,
+                   study.measure.false_alarm_probability()});
+      } else if (alarms) {
+        double known = 0.0, rang = 0.0;
+        for (const std::size_t row : cells.rows(cell))
+          if (counts(table, row, *alarms)) {
+            known += 1.0;
+            rang += table.values[*alarms][row];
+          }
+        const Interval found = clopper_pearson(rang, known, plan.confidence);
+        put(made,
+            {known, rang / known, found.low, found.high, study.measure.false_alarm_probability()});
+      }
+      if (weighted)
+        put(made, {share.weighted().effective_of_event(), share.weighted().largest_share()});
     }
     all.push_back(std::move(made));
   }
@@ -95,11 +118,9 @@ std::vector<SummaryTable> tables_by(const Study& study, const std::vector<Summar
                                      [&](std::size_t row) { return table.valid[row] != 0; });
     cells.start_row(made, cell, static_cast<double>(valid));
     for (const std::size_t c : others) {
-      ClusteredMean moments(clusters);
-      for (const std::size_t row : cells.rows(cell))
-        if (counts(table, row, c)) moments.add(table.index[row], table.values[c][row]);
-      const Interval interval = moments.mean_interval(plan.confidence);
-      put(made, {moments.mean(), interval.low, interval.high});
+      const RowMean moments = mean_of(cell, c);
+      const Interval interval = moments.interval(false, plan.interval, plan.confidence);
+      put(made, {moments.value(false), interval.low, interval.high});
     }
   }
   all.push_back(std::move(made));

@@ -77,12 +77,13 @@ class CellBin {
     return {above_[level] / cells(), interval.low, interval.high};
   }
   /// By counting where ten independent cells or more are there, else by the tail.
-  [[nodiscard]] FoundRate rate(std::size_t level, const Tail& tail) const {
+  [[nodiscard]] FoundRate rate(std::size_t level, const Tail& tail, const ShapeFit& shape,
+                               double cells_around) const {
     constexpr double enough = 10.0;
     const bool count =
         above_[level] / dispersion_[level] >= enough || !tail.fitted || levels_[level] < tail.from;
     if (count) return counted(level);
-    const Interval interval = tail.interval(levels_[level]);
+    const Interval interval = far_interval(tail, shape, levels_[level], cells_around);
     return {tail.rate(levels_[level]), interval.low, interval.high, true};
   }
   [[nodiscard]] Tail tail() const {
@@ -212,7 +213,8 @@ void add_tails(const CellSums& sums, const std::string& suffix, const std::vecto
 }
 
 void add_rates(const Study& study, const CellSums& sums, const std::string& suffix,
-               const CellBin& bin, const Tail& tail, std::vector<SummaryTable>& all) {
+               const CellBin& bin, const Tail& tail, const ShapeFit& shape,
+               std::vector<SummaryTable>& all) {
   TableMaker made("false_alarm_rates" + suffix,
                   "What is found where a false-alarm probability is set", {"pfa_set"});
   made.column("pfa_set", "1", "false-alarm probability, of even Rayleigh noise");
@@ -231,7 +233,7 @@ void add_rates(const Study& study, const CellSums& sums, const std::string& suff
   const double cells = study.measure.matched_filter.estimated_from();
   for (const double u : levels) {
     const std::size_t level = bin.level_at(u);
-    const FoundRate rate = bin.rate(level, tail);
+    const FoundRate rate = bin.rate(level, tail, shape, cells);
     made.row({std::exp(-sums.shape.levels[level]), ratio_db(sums.shape.levels[level], cells),
               bin.above()[level], bin.worth(level), rate.value, rate.low, rate.high,
               rate.by_tail ? 1.0 : 0.0});
@@ -240,7 +242,7 @@ void add_rates(const Study& study, const CellSums& sums, const std::string& suff
 }
 
 void add_roc(const Study& study, const CellSums& sums, const Table& table,
-             const std::string& suffix, const CellBin& bin, const Tail& tail,
+             const std::string& suffix, const CellBin& bin, const Tail& tail, const ShapeFit& shape,
              std::vector<SummaryTable>& all) {
   const auto column =
       std::find_if(table.columns.begin(), table.columns.end(),
@@ -262,7 +264,7 @@ void add_roc(const Study& study, const CellSums& sums, const Table& table,
   constexpr double least = 1e-8;
   for (std::size_t level = sums.shape.levels.size(); level-- > 1;) {
     const double u = sums.shape.levels[level];
-    const FoundRate rate = bin.rate(level, tail);
+    const FoundRate rate = bin.rate(level, tail, shape, cells);
     if (u > -std::log(least) + 1e-9 || !(rate.value >= least)) continue;
     const double threshold = ratio_db(u, cells);
     const auto n = static_cast<double>(present.size());
@@ -295,10 +297,10 @@ std::vector<SummaryTable> cell_tables(const Study& study, const Table& table) {
       shapes.push_back(bins.back().k_shape(cells));
     }
     add_by_time(study, sums, of[target], bins, shapes, all);
-    add_rates(study, sums, of[target], bins.front(), tails.front(), all);
+    add_rates(study, sums, of[target], bins.front(), tails.front(), shapes.front(), all);
     add_tails(sums, of[target], shapes, tails, cells, all);
     if (study.summary.roc)
-      add_roc(study, sums, table, of[target], bins.front(), tails.front(), all);
+      add_roc(study, sums, table, of[target], bins.front(), tails.front(), shapes.front(), all);
   }
   return all;
 }
@@ -355,7 +357,8 @@ std::vector<std::string> rate_warnings(const Study& study,
                   " more bins of the summary's tables are off by more than a factor of 1.3");
   }
   using Background = MatchedFilterPlan::Background;
-  if (!all.empty() && study.measure.matched_filter.background != Background::expected)
+  const Background background = study.measure.matched_filter.background;
+  if (!all.empty() && background != Background::expected && background != Background::summed)
     all.push_back(
         "false-alarm rate: where the level bends or the noise is not the background, "
         "measure.matched_filter.background = \"expected\" compares with what the simulation "

@@ -14,7 +14,8 @@ class Cells;
 
 /// A measure that is 0 or 1, whose mean is a probability.
 [[nodiscard]] bool is_proportion(const Column& column) noexcept;
-/// "pd" of "detected", "pfa" of "false_alarm", with a target's suffix.
+/// "pd" of "detected", "pfa" of "false_alarm", with a target's suffix; "p_loud" of one's own
+/// "loud".
 [[nodiscard]] std::string proportion_name(const Column& column);
 /// The column that the study is about: the first proportion, else the first measure. None: no
 /// measures.
@@ -31,6 +32,16 @@ void check_summary_names(const Study& study);
 
 /// Whether a row counts for a column: valid, and finite there.
 [[nodiscard]] bool counts(const Table& table, std::size_t row, std::size_t column) noexcept;
+
+/// Weights of rows that were drawn from a proposal; empty: they have none.
+[[nodiscard]] std::vector<double> weights_of(const Table& table);
+/// Whether its rows have weights.
+[[nodiscard]] bool is_weighted(const Table& table) noexcept;
+/// How many rows each part of the proposal has, and what they give to the first question.
+[[nodiscard]] std::vector<SummaryTable> drawn_from_table(const Study& study, const Table& table);
+/// What is to be known of a probability that weights estimate: rows of the event that are too few,
+/// or one that has much of it. A sentence each.
+[[nodiscard]] std::vector<std::string> weight_warnings(const Study& study, const Table& table);
 
 /// Count, mean, deviation, interval of the mean, extremes and quantiles of every column.
 [[nodiscard]] SummaryTable statistics_table(const Study& study, const Table& table);
@@ -63,6 +74,9 @@ void check_summary_names(const Study& study);
 [[nodiscard]] std::vector<SummaryTable> saltelli_tables(const Study& study, const Table& table);
 /// Of Saltelli's design the rows that are independent of one another, A and B of every block.
 [[nodiscard]] Table independent_rows(const Study& study, const Table& table);
+
+/// "range 12500, wind_speed 3.5": where a row of a table lies along its axes.
+[[nodiscard]] std::string place_in(const SummaryTable& table, std::size_t row);
 
 /// Spearman's rank correlation and its interval, by Fisher's transformation.
 struct RankCorrelation {

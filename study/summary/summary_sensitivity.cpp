@@ -3,9 +3,9 @@
 #include <array>
 #include <cmath>
 
-#include "study/summary/clustered_mean.h"
 #include "study/summary/intervals.h"
 #include "study/summary/summary_parts.h"
+#include "study/summary/weighted_mean.h"
 
 namespace asdic::detail::study {
 namespace {
@@ -211,16 +211,20 @@ std::vector<SummaryTable> convergence_table(const Study& study, const Table& tab
   made.values.resize(made.columns.size());
   std::size_t total = 0;
   for (std::size_t row = 0; row < table.index.size(); ++row) total += counts(table, row, *question);
-  ClusteredMean moments(clusters_of(study));
+  const std::vector<double> weights = weights_of(table);
+  RowMean moments(clusters_of(study), !weights.empty(), WeightedMean::Of::all_rows);
   double next = 2.0;  // twenty points a decade, and the last
   for (std::size_t row = 0; row < table.index.size(); ++row) {
-    if (!counts(table, row, *question)) continue;
-    moments.add(table.index[row], table.values[*question][row]);
+    const double weight = weights.empty() ? 1.0 : weights[row];
+    if (!counts(table, row, *question)) {
+      moments.leave_out(table.index[row], weight);
+      continue;
+    }
+    moments.add(table.index[row], table.values[*question][row], weight);
     if (moments.count() < next && moments.count() < static_cast<double>(total)) continue;
     next = std::max(moments.count() + 1.0, moments.count() * std::pow(10.0, 0.05));
-    const Interval interval = proportion ? moments.proportion(plan.interval, plan.confidence)
-                                         : moments.mean_interval(plan.confidence);
-    const std::array<double, 4> values{moments.count(), moments.mean(), interval.low,
+    const Interval interval = moments.interval(proportion, plan.interval, plan.confidence);
+    const std::array<double, 4> values{moments.count(), moments.value(proportion), interval.low,
                                        interval.high};
     for (std::size_t k = 0; k < values.size(); ++k) made.values[k].push_back(values[k]);
   }

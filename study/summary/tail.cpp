@@ -225,4 +225,13 @@ Tail fit_tail(std::span<const double> levels, std::span<const double> counts,
   return tail;
 }
 
+Interval far_interval(const Tail& tail, const ShapeFit& shape, double u, double cells) {
+  Interval interval = tail.interval(u);
+  if (!(shape.low > 0.0)) return interval;
+  const double least = std::isinf(shape.high) ? std::exp(-u) : k_exceedance(u, shape.high, cells);
+  interval.low = std::min(interval.low, least);
+  interval.high = std::max(interval.high, k_exceedance(u, shape.low, cells));
+  return interval;
+}
+
 }  // namespace asdic::detail::study

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "study/summary/intervals.h"
+#include "study/summary/k_shape.h"
 
 namespace asdic::detail::study {
 
@@ -45,5 +46,11 @@ struct Tail {
 [[nodiscard]] Tail fit_tail(std::span<const double> levels, std::span<const double> counts,
                             std::span<const double> dispersion, double confidence,
                             bool goodness = true);
+
+/// P(level ≥ u), far over what was counted: all that the tail's interval has, and all K
+/// distributions that are as likely. For a generalised Pareto law that is fitted to spiky cells
+/// bends less than they do further out. \param cells  as of k_exceedance
+[[nodiscard]] Interval far_interval(const Tail& tail, const ShapeFit& shape, double u,
+                                    double cells);
 
 }  // namespace asdic::detail::study

@@ -4,6 +4,8 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
+#include <set>
+#include <utility>
 
 #include "core/error.h"
 #include "core/text.h"
@@ -27,7 +29,7 @@ std::string shown_name(const Column& column) {
 /// All that --until can name: measures, measures along the axes of [summary], indices.
 std::vector<UntilTarget> possible(const Study& study) {
   std::vector<UntilTarget> all;
-  const std::vector<Column> every = columns(study);
+  const std::vector<Column> every = answer_columns(study);
   for (const Column& column : every)
     if (column.role == Column::Role::measure)
       all.push_back({.name = shown_name(column), .column = column.name});
@@ -48,55 +50,40 @@ std::vector<UntilTarget> possible(const Study& study) {
   return all;
 }
 
-UntilTarget target_of(const Study& study, const std::string& text) {
-  const auto fault = [&](const std::string& expected) {
-    return InputError({.where = "--until", .got = in_quotes(text), .expected = expected});
-  };
-  const auto mark = text.rfind('=');
-  const std::string number = text.substr(mark == std::string::npos ? 0 : mark + 1);
-  double half_width = 0.0;
-  const auto [end, error] =
-      std::from_chars(number.data(), number.data() + number.size(), half_width);
-  if (number.empty() || error != std::errc() || end != number.data() + number.size() ||
-      !(half_width > 0.0) || !std::isfinite(half_width))
-    throw fault("a number above 0, or NAME=NUMBER as in pd_by_range=0.05");
-  UntilTarget target{.half_width = half_width};
-  if (mark == std::string::npos) return target;
-  const std::string name = text.substr(0, mark);
+UntilTarget target_of(const Study& study, const std::string& text, const std::string& where) {
+  UntilTarget asked = parse_until(text, where);
+  if (asked.name.empty() && !asked.rule) return asked;
   std::vector<std::string> names;
   std::string list;
   for (UntilTarget& one : possible(study)) {
-    if (one.name == name) {
-      one.half_width = half_width;
+    if (one.name == asked.name) {
+      one.half_width = asked.half_width;
+      one.rule = std::move(asked.rule);
       return std::move(one);
     }
     names.push_back(one.name);
     list += (list.empty() ? "" : ", ") + one.name;
   }
-  const std::string nearest = nearest_name(name, names);
-  throw fault("a number, or with the name of what is to be known: " + list +
-              (nearest.empty() ? "" : " (did you mean " + in_quotes(nearest) + "?)"));
+  if (asked.name.empty() && !names.empty()) {  // a rule of the first question
+    const std::vector<Column> every = answer_columns(study);
+    const std::string first = shown_name(every[*first_question(every)]);
+    UntilTarget whole = target_of(study, first + "=1", where);
+    whole.half_width = 0.0;
+    whole.rule = std::move(asked.rule);
+    return whole;
+  }
+  const std::string nearest = nearest_name(asked.name, names);
+  throw InputError(
+      {.where = where,
+       .got = in_quotes(text),
+       .expected = "a number, or with the name of what is to be known: " + list +
+                   (nearest.empty() ? "" : " (did you mean " + in_quotes(nearest) + "?)")});
 }
 
 const std::vector<double>* values_of(const SummaryTable& table, const std::string& name) {
   for (std::size_t c = 0; c < table.columns.size(); ++c)
     if (table.columns[c].name == name) return &table.values[c];
   return nullptr;
-}
-
-/// "range 12500, wind_speed 3.5"
-std::string place_in(const SummaryTable& table, std::size_t row) {
-  std::string text;
-  for (const std::string& axis : table.axes)
-    for (std::size_t c = 0; c < table.columns.size(); ++c) {
-      if (table.columns[c].name != axis || axis == "measure") continue;
-      const auto& labels = table.columns[c].labels;
-      const double x = table.values[c][row];
-      const bool named = !labels.empty() && x >= 0.0 && x < static_cast<double>(labels.size());
-      text += (text.empty() ? "" : ", ") + axis + ' ' +
-              (named ? labels[static_cast<std::size_t>(x)] : to_text(x));
-    }
-  return text;
 }
 
 /// The widest interval of a column of a table.
@@ -116,7 +103,119 @@ void find_widest(const SummaryTable& table, const std::string& column, Known& kn
   known.where = place_in(table, widest);
 }
 
+/// Whether a rule holds in every row of a table; else where it does not.
+void find_against(const SummaryTable& table, const std::string& column, const Expression& rule,
+                  Known& known) {
+  const auto* mean = values_of(table, column);
+  const auto* low = values_of(table, column + "_low");
+  const auto* high = values_of(table, column + "_high");
+  const auto* count = values_of(table, "count");
+  if (mean == nullptr || low == nullptr || high == nullptr || low->empty()) return;
+  known.holds = true;
+  for (std::size_t row = 0; row < low->size(); ++row) {
+    known.values = {(*mean)[row], (*low)[row], (*high)[row],
+                    count == nullptr ? std::nan("") : (*count)[row]};
+    if (study::holds(rule, known.values)) continue;
+    known.holds = false;
+    known.where = place_in(table, row);
+    return;
+  }
+  known.values = {std::nan(""), std::nan(""), std::nan(""), 0.0};  // of no bin in particular
+}
+
+/// "pd: low > 0.9": the name before the colon; none of "a ? b : c".
+std::string name_before_colon(const std::string& text) {
+  const auto colon = text.find(':');
+  if (colon == std::string::npos) return "";
+  std::string name = text.substr(0, colon);
+  while (!name.empty() && name.back() == ' ') name.pop_back();
+  const bool plain = std::all_of(name.begin(), name.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+  });
+  return plain ? name : "";
+}
+
 }  // namespace
+
+std::string place_in(const SummaryTable& table, std::size_t row) {
+  std::string text;
+  for (const std::string& axis : table.axes)
+    for (std::size_t c = 0; c < table.columns.size(); ++c) {
+      if (table.columns[c].name != axis || axis == "measure") continue;
+      const auto& labels = table.columns[c].labels;
+      const double x = table.values[c][row];
+      const bool named = !labels.empty() && x >= 0.0 && x < static_cast<double>(labels.size());
+      text += (text.empty() ? "" : ", ") + axis + ' ' +
+              (named ? labels[static_cast<std::size_t>(x)] : to_text(x));
+    }
+  return text;
+}
+
+UntilTarget parse_until(const std::string& text, const std::string& where) {
+  UntilTarget target;
+  if (const std::string name = name_before_colon(text);
+      !name.empty() || text.find_first_of("<>&|!?") != std::string::npos ||
+      text.find("==") != std::string::npos) {
+    target.name = name;
+    const std::string rule = name.empty() ? text : text.substr(text.find(':') + 1);
+    target.rule.emplace(rule, names_of_rules(), where);
+    return target;
+  }
+  const auto mark = text.rfind('=');
+  const std::string number = text.substr(mark == std::string::npos ? 0 : mark + 1);
+  const auto [end, error] =
+      std::from_chars(number.data(), number.data() + number.size(), target.half_width);
+  if (number.empty() || error != std::errc() || end != number.data() + number.size() ||
+      !(target.half_width > 0.0) || !std::isfinite(target.half_width))
+    throw InputError({.where = where,
+                      .got = in_quotes(text),
+                      .expected = "a number above 0, or NAME=NUMBER as in pd_by_range=0.05, or "
+                                  "NAME: RULE as in pd: low > 0.9"});
+  if (mark != std::string::npos) target.name = text.substr(0, mark);
+  return target;
+}
+
+const std::vector<std::string>& names_of_rules() {
+  static const std::vector<std::string> all{"half_width", "high", "low", "mean", "rows"};
+  return all;
+}
+
+bool holds(const Expression& rule, const RuleValues& values) {
+  std::vector<double> named;
+  for (const std::string& name : rule.names()) {
+    const double x = name == "mean"   ? values.mean
+                     : name == "low"  ? values.low
+                     : name == "high" ? values.high
+                     : name == "rows" ? values.rows
+                                      : 0.5 * (values.high - values.low);
+    if (std::isnan(x)) return false;
+    named.push_back(x);
+  }
+  const double value = rule.at(named);
+  return value != 0.0 && !std::isnan(value);
+}
+
+std::uint64_t looks_until(std::uint64_t count, const Clusters& clusters) {
+  std::set<std::uint64_t> looks{count};
+  const auto add = [&](std::uint64_t each) {
+    if (each <= count / clusters.size && is_look(each * clusters.size, clusters))
+      looks.insert(each * clusters.size);
+  };
+  for (std::uint64_t ten = 1; ten <= count / clusters.size; ten *= 10) {
+    for (std::uint64_t digit = 1; digit < 10; ++digit) add(digit * ten);
+    if (ten > count / 10) break;
+  }
+  for (std::uint64_t two = 1; two <= count / clusters.size; two *= 2) {
+    add(two);
+    add(3 * two);
+  }
+  return looks.size();
+}
+
+double confidence_of_rules(const Study& study) {
+  const auto looks = static_cast<double>(looks_until(study.realisations, clusters_of(study)));
+  return 1.0 - (1.0 - study.summary.confidence) / looks;
+}
 
 bool is_look(std::uint64_t count, const Clusters& clusters) noexcept {
   if (clusters.kind != Clusters::Kind::rows) {
@@ -131,23 +230,34 @@ bool is_look(std::uint64_t count, const Clusters& clusters) noexcept {
   return count < 10;
 }
 
-Until::Until(const Study& study, const std::vector<std::string>& texts) {
+Until::Until(const Study& study, const std::vector<std::string>& texts, const std::string& where,
+             EnoughRows own)
+    : own_(std::move(own)) {
   for (const std::string& text : texts) {
-    targets_.push_back(target_of(study, text));
+    targets_.push_back(target_of(study, text, where));
+    const UntilTarget& last = targets_.back();
     for (std::size_t i = 0; i + 1 < targets_.size(); ++i)
-      if (targets_[i].name == targets_.back().name)
-        throw InputError({.where = "--until",
+      if (targets_[i].name == last.name && targets_[i].rule.has_value() == last.rule.has_value())
+        throw InputError({.where = where,
                           .got = in_quotes(text) + " beside " + in_quotes(texts[i]),
                           .expected = "each answer once"});
   }
-  if (!texts.empty()) study_ = std::make_shared<const Study>(study);
+  if (!has_value()) return;
+  study_ = std::make_shared<const Study>(study);
+  Study strict = study;
+  strict.summary.confidence = confidence_of_rules(study);
+  of_rules_ = std::make_shared<const Study>(std::move(strict));
 }
 
 std::string Until::text() const {
   std::string text;
+  const auto add = [&](const std::string& word) {
+    text += (text.empty() ? "--until " : " --until ") + word;
+  };
   for (const UntilTarget& target : targets_)
-    text += (text.empty() ? "--until " : " --until ") +
-            (target.name.empty() ? "" : target.name + "=") + to_text(target.half_width);
+    add(target.rule ? in_quotes(target.name + ":" + target.rule->text())
+                    : (target.name.empty() ? "" : target.name + "=") + to_text(target.half_width));
+  if (own_) add("(a function)");
   return text;
 }
 
@@ -155,7 +265,8 @@ OrderedEstimate::OrderedEstimate(RunningEstimate estimate, std::uint64_t first, 
     : estimate_(std::move(estimate)), first_(first), next_(first), until_(until) {
   if (until_.study() == nullptr) return;
   const Study& study = *until_.study();
-  const std::vector<Column> every = columns(study);
+  own_ = OwnValues(study);
+  const std::vector<Column> every = answer_columns(study);
   const auto place = [&](const std::string& name) {
     return static_cast<std::size_t>(
         std::find_if(every.begin(), every.end(),
@@ -168,18 +279,48 @@ OrderedEstimate::OrderedEstimate(RunningEstimate estimate, std::uint64_t first, 
   };
   for (const UntilTarget& target : until_.targets()) {
     const std::size_t at = place(target.column);
-    means_.push_back({.column = at,
-                      .proportion = at < every.size() && is_proportion(every[at]),
-                      .of = ClusteredMean(clusters_of(study))});
+    means_.push_back(
+        {.column = at,
+         .proportion = at < every.size() && is_proportion(every[at]),
+         .of = RowMean(clusters_of(study), is_weighted(study), WeightedMean::Of::all_rows)});
     if (target.axes.empty() && target.index.empty()) continue;
     takes(target.column);
     for (const SummaryAxis& axis : target.axes) takes(axis.column);
+    if (is_weighted(study)) takes(log_weight_column);
   }
+  weight_ = place(log_weight_column);
+  if (until_.own())
+    for (std::size_t column = 0; column < every.size(); ++column)
+      if (std::find(taken_.begin(), taken_.end(), column) == taken_.end()) taken_.push_back(column);
+  if (until_.own()) std::sort(taken_.begin(), taken_.end());
   for (const std::size_t column : taken_) rows_.columns.push_back(every[column]);
   rows_.values.resize(taken_.size());
 }
 
+Known OrderedEstimate::known_rule(const UntilTarget& target, std::size_t mean) const {
+  Known known{.name = target.name, .where = "", .rule = target.rule->text()};
+  const Study& study = *until_.of_rules();
+  if (!target.index.empty()) {
+    for (const SummaryTable& table : saltelli_tables(study, rows_))
+      find_against(table, target.index, *target.rule, known);
+  } else if (!target.axes.empty()) {
+    for (const SummaryTable& table : tables_by(study, target.axes, rows_))
+      for (const Column& column : rows_.columns)
+        if (column.name == target.column)
+          find_against(table, shown_name(column), *target.rule, known);
+  } else {
+    const SummaryPlan& plan = study.summary;
+    const RowMean& of = means_[mean].of;
+    const bool proportion = means_[mean].proportion;
+    const Interval interval = of.interval(proportion, plan.interval, plan.confidence);
+    known.values = {of.value(proportion), interval.low, interval.high, of.count()};
+    known.holds = of.count() > 1.0 && holds(*target.rule, known.values);
+  }
+  return known;
+}
+
 Known OrderedEstimate::known(const UntilTarget& target, std::size_t mean) const {
+  if (target.rule) return known_rule(target, mean);
   Known known{.name = target.name, .asked = target.half_width, .where = ""};
   if (target.name.empty()) {
     known.name = estimate_.name();
@@ -194,10 +335,8 @@ Known OrderedEstimate::known(const UntilTarget& target, std::size_t mean) const 
         if (column.name == target.column) find_widest(table, shown_name(column), known);
   } else {
     const SummaryPlan& plan = until_.study()->summary;
-    const ClusteredMean& of = means_[mean].of;
-    const Interval interval = means_[mean].proportion
-                                  ? of.proportion(plan.interval, plan.confidence)
-                                  : of.mean_interval(plan.confidence);
+    const RowMean& of = means_[mean].of;
+    const Interval interval = of.interval(means_[mean].proportion, plan.interval, plan.confidence);
     if (of.count() > 1.0) known.half_width = 0.5 * (interval.high - interval.low);
   }
   if (!std::isfinite(known.half_width)) known.half_width = infinity;
@@ -211,24 +350,39 @@ std::vector<Known> OrderedEstimate::known() const {
   return all;
 }
 
+bool OrderedEstimate::all_enough() const {
+  for (std::size_t i = 0; i < until_.targets().size(); ++i)
+    if (!known(until_.targets()[i], i).enough()) return false;
+  return !until_.own() || until_.own()(rows_);
+}
+
 void OrderedEstimate::take(const Row& row) {
   if (enough_) return;
-  estimate_.add(row);
+  std::vector<double> with_own;
+  if (!own_.empty()) {
+    with_own = row.values;
+    own_.append(with_own, row.valid);
+  }
+  const std::vector<double>& values = own_.empty() ? row.values : with_own;
+  if (own_.empty())
+    estimate_.add(row);
+  else
+    estimate_.take(row, values);
+  const double weight = weight_ < values.size() ? std::exp(values[weight_]) : 1.0;
   for (Mean& mean : means_)
-    if (row.valid && mean.column < row.values.size() && std::isfinite(row.values[mean.column]))
-      mean.of.add(row.index, row.values[mean.column]);
+    if (row.valid && mean.column < values.size() && std::isfinite(values[mean.column]))
+      mean.of.add(row.index, values[mean.column], weight);
+    else
+      mean.of.leave_out(row.index, weight);
   if (!taken_.empty()) {
     rows_.index.push_back(row.index);
     rows_.valid.push_back(row.valid ? 1 : 0);
-    for (std::size_t i = 0; i < taken_.size(); ++i)
-      rows_.values[i].push_back(row.values.at(taken_[i]));
+    for (std::size_t i = 0; i < taken_.size(); ++i) rows_.values[i].push_back(values.at(taken_[i]));
   }
   if (!row.valid) ++skipped_;
   ++next_;
   if (!until_ || !is_look(next_ - first_, estimate_.clusters())) return;
-  for (std::size_t i = 0; i < until_.targets().size(); ++i)
-    if (!known(until_.targets()[i], i).enough()) return;
-  enough_ = next_ - first_;
+  if (all_enough()) enough_ = next_ - first_;
 }
 
 void OrderedEstimate::add(Row row) {
@@ -245,9 +399,9 @@ void OrderedEstimate::add(Row row) {
   if (enough_) waiting_.clear();
 }
 
-void check_until(const Study& study) {
+void check_until(const Study& study, const std::string& where) {
   if (study.design != Design::latin_hypercube && study.design != Design::grid) return;
-  throw InputError({.where = "--until",
+  throw InputError({.where = where,
                     .got = "design = \"" + std::string(name(study.design)) + "\"",
                     .expected =
                         "\"random\", \"sobol\" or \"saltelli\": the points of this one depend on "

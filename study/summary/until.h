@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "study/expression/expression.h"
 #include "study/sampling/clusters.h"
 #include "study/sampling/index_set.h"
 #include "study/summary/summary.h"
@@ -19,15 +20,37 @@ namespace asdic::detail::study {
 /// from 100 on.
 [[nodiscard]] bool is_look(std::uint64_t count, const Clusters& clusters = {}) noexcept;
 
+/// How many of these looks there are up to a number of realisations, and that number itself.
+[[nodiscard]] std::uint64_t looks_until(std::uint64_t count, const Clusters& clusters = {});
+
+/// At which confidence rules are looked at, so that what holds at any of the study's looks is wrong
+/// no more often than the confidence of the summary says: 1 − (1 − confidence)/looks (Bonferroni).
+[[nodiscard]] double confidence_of_rules(const Study& study);
+
 /// What has to be known, and how well.
 struct UntilTarget {
-  std::string name;         ///< "pd", "pd_by_range", "total_order"; "": the first question
-  double half_width = 0.0;  ///< of its widest confidence interval, at most
+  std::string name;                  ///< "pd", "pd_by_range", "total_order"; "": the first question
+  double half_width = 0.0;           ///< of its widest confidence interval, at most …
+  std::optional<Expression> rule{};  ///< … or what has to hold of it, in every bin
   // Where it stands:
-  std::string column;             ///< of the table of rows: a measure
-  std::vector<SummaryAxis> axes;  ///< of a table along them; none: the mean of all rows
-  std::string index;  ///< "first_order", …: an index of sensitivity; "": none of these
+  std::string column{};             ///< of the table of rows: a measure
+  std::vector<SummaryAxis> axes{};  ///< of a table along them; none: the mean of all rows
+  std::string index{};  ///< "first_order", …: an index of sensitivity; "": none of these
 };
+
+/// "0.05", "pd_by_range=0.1", "pd: low > 0.9 || high < 0.9", "low > 0.9": a target of which name
+/// and half-width, or rule, are known. \param where  for messages \throws InputError
+[[nodiscard]] UntilTarget parse_until(const std::string& text, const std::string& where);
+/// What rules may name: "half_width", "high", …
+[[nodiscard]] const std::vector<std::string>& names_of_rules();
+/// What they are of. \return whether the rule holds; false where something is not known
+struct RuleValues {
+  double mean = 0.0, low = 0.0, high = 0.0, rows = 0.0;
+};
+[[nodiscard]] bool holds(const Expression& rule, const RuleValues& values);
+
+/// What a program decides by itself: whether these rows, with their answer_columns(), are enough.
+using EnoughRows = std::function<bool(const Table& rows)>;
 
 /// When a study has seen enough: all of its targets are known as well as asked for.
 class Until {
@@ -36,20 +59,26 @@ class Until {
   /// Of the first question.
   Until(double half_width) : targets_{{.half_width = half_width}} {}  // NOLINT: as it is written
   /// \param texts  "0.05", "pd_by_range=0.1", as of --until
-  /// \throws InputError ("--until")
-  Until(const Study& study, const std::vector<std::string>& texts);
+  /// \param where  of them, for messages   \param own  looked at besides
+  /// \throws InputError
+  Until(const Study& study, const std::vector<std::string>& texts,
+        const std::string& where = "--until", EnoughRows own = {});
 
-  explicit operator bool() const noexcept { return !targets_.empty(); }
-  [[nodiscard]] bool has_value() const noexcept { return !targets_.empty(); }
+  explicit operator bool() const noexcept { return has_value(); }
+  [[nodiscard]] bool has_value() const noexcept { return !targets_.empty() || own_; }
   [[nodiscard]] const std::vector<UntilTarget>& targets() const noexcept { return targets_; }
+  [[nodiscard]] const EnoughRows& own() const noexcept { return own_; }
   /// What of a study its tables take; none where they take nothing but the first question.
   [[nodiscard]] const std::shared_ptr<const Study>& study() const noexcept { return study_; }
+  /// The same, with the confidence of rules.
+  [[nodiscard]] const std::shared_ptr<const Study>& of_rules() const noexcept { return of_rules_; }
   /// "--until 0.05 --until pd_by_range=0.1".
   [[nodiscard]] std::string text() const;
 
  private:
   std::vector<UntilTarget> targets_;
-  std::shared_ptr<const Study> study_;
+  std::shared_ptr<const Study> study_, of_rules_;
+  EnoughRows own_;
 };
 
 /// How well a target is known.
@@ -57,8 +86,11 @@ struct Known {
   std::string name;
   double half_width = infinity;  ///< of its widest interval; infinite: one is not known at all
   double asked = 0.0;
-  std::string where;  ///< the widest: "range 12500"; "": there is one alone
-  [[nodiscard]] bool enough() const noexcept { return half_width <= asked; }
+  std::string where;   ///< the widest: "range 12500"; "": there is one alone
+  std::string rule{};  ///< in place of a half-width; `where` is one for which it does not hold
+  bool holds = false;
+  RuleValues values{};  ///< of a rule without bins, or there
+  [[nodiscard]] bool enough() const noexcept { return rule.empty() ? half_width <= asked : holds; }
 };
 
 /// Feeds an estimate with rows in the order of their indices, in whatever order they come, and says
@@ -88,6 +120,8 @@ class OrderedEstimate {
  private:
   void take(const Row& row);
   [[nodiscard]] Known known(const UntilTarget& target, std::size_t mean) const;
+  [[nodiscard]] Known known_rule(const UntilTarget& target, std::size_t mean) const;
+  [[nodiscard]] bool all_enough() const;
 
   RunningEstimate estimate_;
   std::uint64_t first_, next_, skipped_ = 0;
@@ -95,16 +129,18 @@ class OrderedEstimate {
   struct Mean {
     std::size_t column = 0;
     bool proportion = false;
-    ClusteredMean of{};
+    RowMean of;
   };
   std::vector<Mean> means_;         // [targets] of their columns
+  std::size_t weight_ = 0;          // column of the weights; as many as there are: none
   std::vector<std::size_t> taken_;  // columns that rows_ holds
   Table rows_;
+  OwnValues own_;
   std::optional<std::uint64_t> enough_;
   std::map<std::uint64_t, Row> waiting_;  // rows after a gap, without their time series
 };
 
-/// \throws InputError ("--until") for designs whose points depend on how many there are
-void check_until(const Study& study);
+/// \throws InputError for designs whose points depend on how many there are
+void check_until(const Study& study, const std::string& where = "--until");
 
 }  // namespace asdic::detail::study

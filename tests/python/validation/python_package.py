@@ -563,6 +563,58 @@ class Studies(unittest.TestCase):
         with self.assertRaisesRegex(KeyError, "mine"):
             asdic.study(self.s, self.output, realisations=4, vary=self.vary, measures={"x": bad})
 
+    def test_a_rule_of_ones_own_stops_it(self):
+        asked = []
+
+        def enough(rows):
+            asked.append((len(rows), "pd" in rows, "detected" in rows))
+            return len(rows) >= 200 and rows.detected.mean() > 0.0
+
+        known = SCENARIOS / "studies/known_answer.toml"
+        found = asdic.study(known, self.output, set={"study.realisations": 500}, until=enough)
+        self.assertEqual(asked, [(100, False, True), (200, False, True)])
+        self.assertEqual(len(found.table), 200)
+        words = asdic.study(known, self.output, set={"study.realisations": 500}, fresh=True,
+                            until=["pd: rows >= 150", enough])
+        self.assertEqual(len(words.table), 200)
+
+        def bad(rows):
+            raise KeyError("mine")
+
+        with self.assertRaisesRegex(KeyError, "mine"):
+            asdic.study(known, self.output, set={"study.realisations": 500}, fresh=True, until=bad)
+        with self.assertRaisesRegex(asdic.InputError, "until: found"):
+            asdic.study(known, self.output, fresh=True, until="pf=0.1")
+
+    def test_formulae_of_rows_and_of_functions(self):
+        def strength(ping):
+            return ping.asdic.scenario.targets[0].strength_db
+
+        def make(own):
+            return asdic.study(self.s, self.output, realisations=8, vary=self.vary,
+                               measures={"strength": asdic.Measure(strength, samples=False)},
+                               summary={"own": own})
+
+        first = make({"twice": "2 * strength"})
+        np.testing.assert_array_equal(first.table.twice, 2.0 * first.table.strength_db)
+        again = make({"far": {"value": "strength > 10", "event": True}})
+        np.testing.assert_array_equal(again.table.far, again.table.strength_db > 10.0)
+        self.assertNotIn("twice", asdic.read_study(self.output).table)
+
+    def test_what_is_kept_of_rows(self):
+        asdic.study(self.s, self.output, realisations=4, vary=self.vary,
+                    measure={"detection": {"by": "receiver"}, "detections": "all",
+                             "spectra": {"every": 2, "resolution": 5.0, "low": 900.0,
+                                         "high": 1100.0}},
+                    set={"pings.samples": "baseband"})
+        file = asdic.open(self.output)
+        found = file.asdic.table("detections")
+        table = asdic.read_study(self.output).table
+        hits = found[found.owner == 0].groupby("index").snr_db.max()
+        np.testing.assert_array_equal(sorted(hits.index), table.index[table.detected == 1])
+        self.assertEqual(file["spectra/level_db"].shape, (2, 40))
+        np.testing.assert_allclose(file["spectra/frequency"], 902.5 + 5.0 * np.arange(40))
+
     def test_a_file_of_a_study(self):
         found = asdic.study(SCENARIOS / "studies/known_answer.toml", self.output,
                             set={"study.realisations": 50})

@@ -10,6 +10,7 @@
 #include "core/units.h"
 #include "study/measures/sampler.h"
 #include "study/reader/study_reader.h"
+#include "study/summary/law_tables.h"
 #include "support/kolmogorov.h"
 #include "support/plain_sea.h"
 #include "support/temporary_directory.h"
@@ -283,6 +284,122 @@ std::string correlated(const std::string& matrix, const std::string& more = "") 
 
 // Spearman's ρ of a Gaussian copula is 6/π·asin(r/2). In n rows its standard deviation is at most
 // 1/√n (that of independent ones), and 4.9 of them are passed once in 10⁶.
+const std::string windy_months =
+    "month = { law = \"uniform\", low = 0.0, high = 12.0, keys = [] }\n"
+    "\"environment.wind_speed\" = { law = \"rayleigh\", mean = \"6 + 4*sin(month)\" }\n";
+
+// Given the month a draw's own distribution function is uniform: the mean goes with it without
+// steps. With one mean for all months it is not.
+TEST(DependentLaws, ParametersMayBeFormulae) {
+  for (const char* design : {"random", "sobol"}) {
+    const auto x = drawn(study_of(windy_months, design));
+    std::vector<double> share, one_mean;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double wind = x.at("wind_speed")[i], mean = 6.0 + 4.0 * std::sin(x.at("month")[i]);
+      share.push_back(1.0 - std::exp(-0.25 * std::numbers::pi * std::pow(wind / mean, 2)));
+      one_mean.push_back(1.0 - std::exp(-0.25 * std::numbers::pi * std::pow(wind / 6.0, 2)));
+    }
+    const auto even = [](double u) { return u; };
+    EXPECT_LT(support::kolmogorov_distance(share, even) * std::sqrt(double(n)), 2.69) << design;
+    EXPECT_GT(support::kolmogorov_distance(one_mean, even) * std::sqrt(double(n)), 2.69) << design;
+  }
+}
+
+// Each law by its own parameters, limits too: as the same law with numbers, of the same coordinate.
+TEST(DependentLaws, EveryContinuousLawTakesFormulae) {
+  const std::vector<std::pair<std::string, std::string>> laws{
+      {"law = \"uniform\", low = \"a\", high = 9", "law = \"uniform\", low = 2, high = 9"},
+      {"law = \"normal\", mean = 5, deviation = \"a/2\"",
+       "law = \"normal\", mean = 5, deviation = 1"},
+      {"law = \"log_normal\", median = \"a+3\", log_deviation = 0.3",
+       "law = \"log_normal\", median = 5, log_deviation = 0.3"},
+      {"law = \"triangular\", low = 1, mode = \"a\", high = \"a*3\"",
+       "law = \"triangular\", low = 1, mode = 2, high = 6"},
+      {"law = \"rayleigh\", scale = \"a\", max = \"a*2\"",
+       "law = \"rayleigh\", scale = 2, max = 4"},
+      {"law = \"weibull\", shape = \"a\", mean = 5, min = 1",
+       "law = \"weibull\", shape = 2, mean = 5, min = 1"}};
+  for (const auto& [formula, number] : laws) {
+    const std::string a = "a = { law = \"grid\", values = [2.0], keys = [] }\n";
+    const auto x =
+        drawn(study_of(a + "\"environment.wind_speed\" = { " + formula + " }\n", "random", 200));
+    const auto y =
+        drawn(study_of(a + "\"environment.wind_speed\" = { " + number + " }\n", "random", 200));
+    EXPECT_EQ(x.at("wind_speed"), y.at("wind_speed")) << formula;
+  }
+}
+
+// The file has each row's density given its month: weights for another law of the wind. Of the
+// month's own Rayleigh law the mean of wind² is 4/π·mean²; weighed for one mean of 2.5 it is
+// 4/π·6.25.
+TEST(DependentLaws, DensitiesAreStoredAsConditional) {
+  const Study study = study_of(windy_months);
+  Table table;
+  for (const auto& [name, values] : drawn(study)) {
+    table.columns.push_back({.name = name});
+    table.values.push_back(values);
+  }
+  table.index.resize(n);
+  const std::vector<RowDensity> made = row_densities(study, table);
+  ASSERT_EQ(made.size(), 1U);
+  EXPECT_EQ(made[0].column, "wind_speed");
+  const auto rayleigh = [](double x, double mean) {
+    const double c = 0.25 * std::numbers::pi / (mean * mean);
+    return 2.0 * c * x * std::exp(-c * x * x);
+  };
+  const auto x = drawn(study);
+  double sum = 0.0, weights = 0.0, squares = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double wind = x.at("wind_speed")[i], mean = 6.0 + 4.0 * std::sin(x.at("month")[i]);
+    EXPECT_NEAR(made[0].density[i], rayleigh(wind, mean), 1e-12);
+    const double weight = rayleigh(wind, 2.5) / made[0].density[i];
+    sum += weight * wind * wind;
+    weights += weight;
+    squares += std::pow(weight * wind * wind, 2);
+  }
+  const double truth = 4.0 / std::numbers::pi * 6.25;
+  const double error = std::sqrt(squares / n - std::pow(sum / n, 2)) / std::sqrt(double(n));
+  EXPECT_NEAR(weights / n, 1.0, 0.15);
+  EXPECT_NEAR(sum / n, truth, 4.9 * error);
+  // By the mixture's table nobody could weigh a row: it is another density.
+  const std::vector<LawTable> tables = law_tables(study);
+  ASSERT_EQ(tables.size(), 2U);
+  EXPECT_EQ(tables[1].how, "50000 draws of another seed");
+}
+
+TEST(DependentLaws, ParametersThatMakeNoLawAreAFaultOfTheirRow) {
+  const Study study = study_of(
+      "month = { law = \"uniform\", low = 0.0, high = 12.0, keys = [] }\n"
+      "\"environment.wind_speed\" = { law = \"rayleigh\", mean = \"8 - month\" }\n");
+  const Sampler sampler(study);
+  int faults = 0;
+  for (std::uint64_t i = 0; i < 50; ++i) {
+    const Sampler::Drawn row = sampler.draw(i);
+    TomlValue tree = study.scenario;
+    try {
+      sampler.apply(row, tree);
+      EXPECT_LT(row.values[0], 8.0);
+    } catch (const InputError& error) {
+      ++faults;
+      EXPECT_GE(row.values[0], 8.0);
+      EXPECT_NE(std::string(error.what())
+                    .find("found what makes no law: mean = \"8 - month\", expected "
+                          "parameters of a law \"rayleigh\""),
+                std::string::npos)
+          << error.what();
+    }
+  }
+  EXPECT_GT(faults, 5);
+  EXPECT_NE(fault_of("\"environment.wind_speed\" = { law = \"rayleigh\", mean = \"mnth\" }\n")
+                .find("found the name \"mnth\""),
+            std::string::npos);
+  EXPECT_NE(
+      fault_of("a = { law = \"uniform\", low = 0, high = 1, keys = [] }\n"
+               "\"environment.wind_speed\" = { law = \"normal\", mean = \"a\", deviation = -1 }\n")
+          .find("deviation: found -1, expected a number above 0"),
+      std::string::npos);
+}
+
 TEST(Correlation, RanksAreCorrelatedAsTheCopulaSays) {
   const auto spearman = [](double r) { return 6.0 / pi * std::asin(r / 2.0); };
   const std::string matrix = "[[1, 0.7, -0.5], [0.7, 1, 0.1], [-0.5, 0.1, 1]]";

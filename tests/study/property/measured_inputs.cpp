@@ -253,6 +253,123 @@ TEST_F(MeasuredInputs, AMonthOfAClimatology) {
   }
 }
 
+/// Twelve months of wind: 5 m/s and the month.
+void write_wind(const std::filesystem::path& path) {
+  support::NetcdfWriter file(path);
+  std::vector<double> time, wind;
+  for (int month = 0; month < 12; ++month) {
+    time.push_back(15.0 + 30.4 * month);
+    for (int cell = 0; cell < 4; ++cell) wind.push_back(5.0 + month + 1.0);
+  }
+  file.axis("time", time, {{"units", "days since 0001-01-01 00:00:00"}, {"climatology", "b"}});
+  file.axis("lat", {10.0, 11.0}, {{"units", "degrees_north"}});
+  file.axis("lon", {20.0, 21.0}, {{"units", "degrees_east"}});
+  file.variable("w", NC_DOUBLE, {"time", "lat", "lon"}, wind,
+                {{"units", "m/s"}, {"standard_name", "wind_speed"}});
+}
+
+TEST_F(MeasuredInputs, TheWindOfAMonthIsDrawnWithItsWater) {
+  write_climatology(folder / "months.nc", true);
+  write_wind(folder / "wind.nc");
+  const std::string both = months + ", wind = \"wind.nc\", months = [1, 8, 11] }\n";
+  const Study study = study_of(both);
+  const Sampler sampler(study);
+  ASSERT_EQ(sampler.columns().size(), 2U);
+  EXPECT_EQ(sampler.columns()[0].name, "profile");
+  EXPECT_EQ(sampler.columns()[1].name, "profile_wind_speed");
+  EXPECT_EQ(sampler.columns()[1].unit, "m/s");
+  std::set<double> seen;
+  for (std::uint64_t i = 0; i < 40; ++i) {
+    const Sampler::Drawn row = sampler.draw(i);
+    TomlValue tree = study.scenario;
+    sampler.apply(row, tree);
+    const Scenario scenario = scenario_of(tree, study.scenario_path);
+    const double month = std::vector<double>{1.0, 8.0, 11.0}[std::size_t(row.values[0])];
+    EXPECT_EQ(row.values[1], 5.0 + month);
+    EXPECT_EQ(scenario.wind_speed, 5.0 + month);
+    EXPECT_NEAR(scenario.environment.water.at(0.0).c,
+                sound_speed(SeawaterEquation::chen_millero, 8.0 + month, 35.0, 0.0, 10.2), 1e-9);
+    seen.insert(month);
+  }
+  EXPECT_EQ(seen.size(), 3U);
+  // Beside an entry of the wind's own it is a column to look at: its law has the month's mean.
+  const Study own = study_of(both +
+                             "\"environment.wind_speed\" = { law = \"rayleigh\", mean = "
+                             "\"profile_wind_speed\" }\n");
+  const auto x = drawn(own);
+  std::vector<double> share;  // 1 − exp(−π/4·(x/mean)²) is uniform, of the month's mean alone
+  for (std::size_t i = 0; i < x.at("wind_speed").size(); ++i) {
+    const double ratio = x.at("wind_speed")[i] / x.at("profile_wind_speed")[i];
+    share.push_back(1.0 - std::exp(-0.25 * M_PI * ratio * ratio));
+  }
+  EXPECT_LT(distance(share, [](double u) { return u; }), 2.69);
+  EXPECT_NE(identity(study), identity(study_of(months + ", months = [1, 8, 11] }\n")));
+}
+
+TEST_F(MeasuredInputs, TimesMayBeDates) {
+  static_cast<void>(folder.write(
+      "wind.csv", "time,wind_speed\n2024-02-28,2\n2024-02-29T12:00,5\n2024-03-01T00:00Z,6\n"));
+  const std::string series =
+      "wind = { law = \"time_series\", file = \"wind.csv\", keys = "
+      "[\"environment.wind_speed\"]";
+  const Study study = study_of(series + " }\n");
+  EXPECT_EQ(Sampler(study).columns()[0].unit, "days since 1970-01-01");
+  const auto x = drawn(study);
+  const std::vector<double>& time = x.at("wind_time");
+  constexpr double first = 19781.0;  // 2024-02-28
+  EXPECT_LT(distance(time, [](double t) { return (t - first) / 2.0; }), 2.69);
+  for (std::size_t i = 0; i < time.size(); ++i) {  // 2 m/s and 2 a day, in both pieces
+    EXPECT_NEAR(x.at("wind")[i], 2.0 + 2.0 * (time[i] - first), 1e-9);
+  }
+  const auto later =
+      drawn(study_of(series + ", from = \"2024-02-29\", until = \"2024-02-29T06:00\" }\n"));
+  for (const double t : later.at("wind_time")) EXPECT_TRUE(t >= first + 1.0 && t <= first + 1.25);
+  EXPECT_NE(fault_of(series + ", from = \"2025-01-01\" }\n")
+                .find("expected a date from 2024-02-28 to "
+                      "2024-03-01"),
+            std::string::npos)
+      << fault_of(series + ", from = \"2025-01-01\" }\n");
+  static_cast<void>(folder.write("wind.csv", "time,wind_speed\n2024-02-28,2\n2024-02-30,5\n"));
+  EXPECT_NE(
+      fault_of(series + " }\n").find("wind.csv:3: time: found \"2024-02-30\", expected a date"),
+      std::string::npos)
+      << fault_of(series + " }\n");
+}
+
+TEST_F(MeasuredInputs, TextsOfATableAreLabels) {
+  static_cast<void>(folder.write("sea.csv",
+                                 "window,wind,regime\nhann,2,calm\nnone,9,storm\n"
+                                 "hann,3,calm\nhann,11,storm\n"));
+  const std::string table =
+      "sea = { law = \"table\", file = \"sea.csv\", columns = [\"window\", "
+      "\"wind\", \"regime\"], keys = [\"pulse.window\", "
+      "\"environment.wind_speed\"] }\n";
+  const Study study = study_of(table +
+                               "\"target.0.depth\" = { given = \"sea_regime\", laws.calm = { law = "
+                               "\"uniform\", low = 10, high = 20 }, laws.storm = { law = "
+                               "\"uniform\", low = 50, high = 60 } }\n");
+  const Sampler sampler(study);
+  EXPECT_EQ(sampler.columns()[0].labels, (std::vector<std::string>{"hann", "none"}));
+  EXPECT_EQ(sampler.columns()[2].name, "sea_regime");
+  EXPECT_EQ(sampler.columns()[2].labels, (std::vector<std::string>{"calm", "storm"}));
+  for (std::uint64_t i = 0; i < 60; ++i) {
+    const Sampler::Drawn row = sampler.draw(i);
+    const bool storm = row.values[1] > 5.0;
+    EXPECT_EQ(row.values[2] == 1.0, storm);
+    EXPECT_EQ(row.values[3] > 40.0, storm);
+    EXPECT_EQ(row.values[0] == 1.0, row.values[1] == 9.0);
+    TomlValue tree = study.scenario;
+    sampler.apply(row, tree);
+    EXPECT_EQ(std::get<std::string>(tree.find("pulse")->find("window")->data),
+              row.values[1] == 9.0 ? "none" : "hann");
+  }
+  static_cast<void>(folder.write("sea.csv", "window,wind,regime\nhann,2,calm\nhann,x,storm\n"));
+  EXPECT_NE(
+      fault_of(table).find("sea.csv:3: wind: found \"x\", expected a number, as in other rows"),
+      std::string::npos)
+      << fault_of(table);
+}
+
 TEST_F(MeasuredInputs, FilesAreOfTheStudysIdentity) {
   const std::string wind = "\"environment.wind_speed\" = { law = \"table\", file = \"a.csv\" }\n";
   static_cast<void>(folder.write("a.csv", "wind_speed\n1\n2\n"));

@@ -203,6 +203,63 @@ TEST_F(TwoSonars, OneIsBetterWhereItIs) {
   }
 }
 
+// How well a difference is known: of all rows, of the worst bin, and by a rule.
+TEST_F(TwoSonars, KnowTheirDifferenceAsWellAsTheWorstBin) {
+  const Comparison found = compared();
+  const std::vector<std::string> names{"hull", "towed"};
+  const auto known = [&](UntilTarget target) {
+    return known_difference(first_.columns, found, names, target);
+  };
+  const auto rule = [](const std::string& text) {
+    return Expression(text, names_of_rules(), "here");
+  };
+  const SummaryTable &all = table(found, "differences"), &by = table(found, "pd_by_range");
+  const Known pd = known({.name = "", .half_width = 0.01});
+  EXPECT_EQ(pd.name, "pd");
+  EXPECT_EQ(pd.where, "towed less hull");
+  EXPECT_DOUBLE_EQ(pd.half_width, 0.5 * (column(all, "hull_to_towed_high")[0] -
+                                         column(all, "hull_to_towed_low")[0]));
+  EXPECT_TRUE(pd.enough());  // 0.0093
+  double worst = 0.0;
+  for (std::size_t i = 0; i < 10; ++i)
+    worst = std::max(
+        worst, 0.5 * (column(by, "hull_to_towed_high")[i] - column(by, "hull_to_towed_low")[i]));
+  const UntilTarget bins{.name = "pd_by_range",
+                         .half_width = 0.03,
+                         .column = "detected",
+                         .axes = {{.column = "range"}}};
+  EXPECT_DOUBLE_EQ(known(bins).half_width, worst);
+  EXPECT_FALSE(known(bins).enough());
+  EXPECT_TRUE(
+      known({.name = "pd", .rule = rule("low > 0 || high < 0"), .column = "detected"}).enough());
+  EXPECT_FALSE(known({.name = "pd", .rule = rule("low > 0.2"), .column = "detected"}).enough());
+  UntilTarget decided = bins;
+  decided.rule = rule("low > 0 || high < 0");
+  const Known near = known(decided);
+  EXPECT_FALSE(near.enough());  // up to 10 km nobody is better
+  EXPECT_TRUE(near.where.starts_with("towed less hull, range 999.")) << near.where;
+  decided.rule = rule("half_width < 0.1 && rows > 300");
+  EXPECT_TRUE(known(decided).enough());
+}
+
+TEST_F(TwoSonars, SayWhichIsBetterAndOfWhatNobodyCan) {
+  EXPECT_EQ(compared().better, (std::vector<Better>{Better::greatest, Better::least}));
+  EXPECT_EQ(better({.name = "noise_level_db"}), Better::neither);
+  EXPECT_EQ(better({.name = "position_error_rock"}), Better::least);
+  EXPECT_EQ(better({.name = "time_to_decide", .formula = "paths", .least_best = true}),
+            Better::least);
+  EXPECT_EQ(better({.name = "detected_soon", .formula = "paths"}), Better::neither);
+}
+
+TEST(Comparison, GoesOnInRounds) {
+  Study study;
+  EXPECT_EQ(rounds_of(study, 3000), (std::vector<std::uint64_t>{100, 200, 500, 1000, 2000, 3000}));
+  EXPECT_EQ(rounds_of(study, 60), (std::vector<std::uint64_t>{60}));
+  study.design = Design::sobol;
+  study.design_options.replicates = 16;  // 128 = 16·8, 192 = 16·12, …
+  EXPECT_EQ(rounds_of(study, 512), (std::vector<std::uint64_t>{128, 192, 256, 384, 512}));
+}
+
 TEST_F(TwoSonars, OfOtherSeedsAreNotCompared) {
   studies_[1].seed = 5;
   EXPECT_THROW(static_cast<void>(compared()), InputError);

@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <iostream>
 #include <random>
 
 #include "core/error.h"
 #include "study/reader/study_reader.h"
+#include "study/summary/intervals.h"
 #include "support/plain_sea.h"
 #include "support/temporary_directory.h"
 
@@ -109,7 +111,7 @@ TEST(Until, FaultsSayWhatCanBeAskedFor) {
   const Study study = study_of("realisations = 100\n", "by = [\"depth\"]\n");
   EXPECT_EQ(fault_of(study, {"0"}),
             "--until: found \"0\", expected a number above 0, or NAME=NUMBER as in "
-            "pd_by_range=0.05");
+            "pd_by_range=0.05, or NAME: RULE as in pd: low > 0.9");
   EXPECT_NE(fault_of(study, {"pd="}).find("found \"pd=\", expected a number above 0"),
             std::string::npos);
   EXPECT_NE(fault_of(study, {"inf"}).find("expected a number above 0"), std::string::npos);
@@ -126,6 +128,149 @@ TEST(Until, FaultsSayWhatCanBeAskedFor) {
             "--until: found \"pd=0.3\" beside \"pd=0.1\", expected each answer once");
   EXPECT_EQ(Until(study, {"0.05", "pd_by_depth=0.1"}).text(),
             "--until 0.05 --until pd_by_depth=0.1");
+}
+
+/// A study whose events have this probability: where it stops, and what its intervals say then.
+struct Ended {
+  bool stopped = false;
+  double low = 0.0, high = 0.0;  ///< at the confidence of the summary
+  Known known{};
+};
+Ended ended(const Study& study, const Until& until, double p, std::uint64_t seed) {
+  OrderedEstimate estimate(RunningEstimate(study), 0, until);
+  const std::size_t columns = answer_columns(study).size() - study.summary.own.size();
+  for (std::uint64_t index = 0; index < study.realisations && !estimate.enough(); ++index) {
+    Row row{.index = index};
+    row.values.assign(columns, 0.0);
+    row.values[3] = uniform_draw(seed, index, 3) < p ? 1.0 : 0.0;
+    estimate.add(std::move(row));
+  }
+  const Estimate last = *estimate.estimate();
+  return {estimate.enough().has_value(), last.low, last.high, estimate.known().front()};
+}
+
+TEST(Until, RulesOfIntervals) {
+  const Study study = study_of("realisations = 20000\n", "by = [{ axis = \"depth\", bins = 4 }]\n");
+  // Looks at 100, …, 1000, …, 10000, 20000: 10 + 9 + 1.
+  EXPECT_EQ(looks_until(20000), 20U);
+  EXPECT_EQ(looks_until(20500), 21U);  // the end is one
+  EXPECT_NEAR(confidence_of_rules(study), 1.0 - 0.05 / 20.0, 1e-15);
+  // z at 0.9975 is 3.0233: a share of one half is above 0.4 from 3.0233/2·√(1/n) < 0.1 on, n ≈ 229.
+  std::vector<Known> known;
+  const std::uint64_t end = end_of(study, {"pd: low > 0.4"}, false, &known);
+  EXPECT_TRUE(end == 200 || end == 300 || end == 400) << end;
+  EXPECT_TRUE(known[0].holds);
+  EXPECT_GT(known[0].values.low, 0.4);
+  EXPECT_EQ(end_of(study, {"low > 0.4"}), end);  // of the first question
+  EXPECT_EQ(end_of(study, {"pd: rows >= 700"}), 700U);
+  EXPECT_EQ(end_of(study, {"pd: rows >= 150 && mean > 0.2"}), 200U);
+  EXPECT_EQ(end_of(study, {"pd: low > 0.6"}, false, &known), 0U);  // it is one half
+  EXPECT_FALSE(known[0].enough());
+  // In every bin: the deepest has a quarter of the rows.
+  EXPECT_EQ(end_of(study, {"pd_by_depth: half_width < 0.05"}, false, &known), 4000U);
+  EXPECT_EQ(end_of(study, {"pd_by_depth: low > 0.4 && rows > 600"}), 3000U);
+  EXPECT_EQ(end_of(study, {"pd_by_depth: low > 0.6"}, false, &known), 0U);
+  EXPECT_TRUE(known[0].where.starts_with("depth ")) << known[0].where;
+  EXPECT_EQ(Until(study, {"pd: low > 0.4"}).text(), "--until \"pd: low > 0.4\"");
+  EXPECT_NE(fault_of(study, {"pd: lo > 0.4"}).find("the name \"lo\", expected one of"),
+            std::string::npos);
+  EXPECT_NE(fault_of(study, {"pq: low > 0.4"}).find("(did you mean \"pd\"?)"), std::string::npos);
+}
+
+// A study that goes on until it can tell whether p is above or below 0.9, where p is 0.9: whatever
+// it says is wrong. At the confidence of the summary, instead of that of rules, it is wrong at one
+// of its looks much more often than it says.
+TEST(Until, RulesAreWrongNoMoreOftenThanTheySay) {
+  const Study study =
+      study_of("realisations = 2000\n", "by = []\ninterval = \"clopper_pearson\"\n");
+  const Until rule(study, {"pd: low > 0.9 || high < 0.9"});
+  int wrong = 0, by_luck = 0;
+  constexpr int studies = 400;
+  for (std::uint64_t seed = 1; seed <= studies; ++seed) {
+    OrderedEstimate estimate(RunningEstimate(study), 0, {});
+    bool lucky = false;
+    wrong += ended(study, rule, 0.9, seed).stopped;
+    double hits = 0.0;
+    for (std::uint64_t index = 0; index < study.realisations; ++index) {
+      hits += uniform_draw(seed, index, 3) < 0.9 ? 1.0 : 0.0;
+      if (!is_look(index + 1)) continue;
+      const Interval plain = clopper_pearson(hits, double(index + 1), 0.95);
+      lucky = lucky || plain.low > 0.9 || plain.high < 0.9;
+    }
+    by_luck += lucky;
+  }
+  // P(more than 38 | 0.05 of 400) < 10⁻⁴ …; the wrong way is found wrong.
+  EXPECT_LE(wrong, 38) << wrong;
+  EXPECT_GT(by_luck, 44) << by_luck;
+  RecordProperty("wrong", wrong);
+  RecordProperty("by_luck", by_luck);
+  std::cout << "wrong " << wrong << ", uncorrected " << by_luck << " of " << studies << '\n';
+}
+
+// Stopping at a half-width: how often the interval of the file covers then.
+TEST(Until, IntervalsAfterAHalfWidthCoverALittleLessOften) {
+  const Study study = study_of("realisations = 2000\n", "by = []\n");
+  for (const double p : {0.5, 0.9}) {
+    const Until until(study, {"pd=0.05"});
+    int held = 0;
+    constexpr int studies = 400;
+    for (std::uint64_t seed = 1; seed <= studies; ++seed) {
+      const Ended end = ended(study, until, p, seed);
+      held += end.low <= p && p <= end.high;
+    }
+    std::cout << "p " << p << ": " << held << " of " << studies << '\n';
+    EXPECT_GE(held, 0.92 * studies - 4.8 * std::sqrt(0.92 * 0.08 * studies)) << p;
+  }
+}
+
+TEST(Until, OfOnesOwnMeasures) {
+  const Study study =
+      study_of("realisations = 20000\nuntil = [\"p_deep=0.05\", \"pd: rows > 100\"]\n",
+               "by = []\n[summary.own]\n"
+               "deep = { value = \"depth > 50\", event = true }\n"
+               "above = \"echo_level_db - 3\"\n");
+  EXPECT_EQ(study.until.size(), 2U);
+  EXPECT_EQ(end_of(study, {"p_deep=0.05"}), 400U);  // a half of 385 and more
+  EXPECT_EQ(end_of(study, {"above=0.2"}), end_of(study, {"echo_level_db=0.2"}));
+  EXPECT_EQ(end_of(study, study.until), 400U);
+}
+
+TEST(Until, AFunctionOfTheRows) {
+  const Study study = study_of("realisations = 20000\n", "by = []\n");
+  std::vector<std::size_t> asked;
+  const Until until(study, {}, "until", [&](const Table& rows) {
+    asked.push_back(rows.index.size());
+    EXPECT_EQ(rows.columns.size(), answer_columns(study).size());
+    return rows.index.size() >= 300;
+  });
+  OrderedEstimate estimate(RunningEstimate(study), 0, until);
+  for (std::uint64_t index = 0; index < 1000 && !estimate.enough(); ++index)
+    estimate.add(row_of(study, index));
+  EXPECT_EQ(estimate.enough(), 300U);
+  EXPECT_EQ(asked, (std::vector<std::size_t>{100, 200, 300}));
+}
+
+TEST(Until, OfTheStudyFile) {
+  EXPECT_EQ(study_of("realisations = 100\nuntil = 0.05\n").until,
+            (std::vector<std::string>{"0.05"}));
+  const auto fault = [](const std::string& until) {
+    try {
+      static_cast<void>(study_of("realisations = 100\nuntil = " + until + "\n"));
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("no fault");
+  };
+  EXPECT_NE(fault("\"pq=0.1\"")
+                .find("study.toml:3: study.until: found \"pq=0.1\", expected a "
+                      "number, or with the name of what is to be known"),
+            std::string::npos)
+      << fault("\"pq=0.1\"");
+  EXPECT_NE(fault("true").find("a number, a text as --until takes it"), std::string::npos);
+  EXPECT_NE(fault("[0.1, true]").find("study.until[1]"), std::string::npos);
+  EXPECT_NE(fault("-1").find("expected a number above 0"), std::string::npos);
+  EXPECT_NE(fault("0.1\ndesign = \"latin_hypercube\"").find("it cannot stop early"),
+            std::string::npos);
 }
 
 }  // namespace
