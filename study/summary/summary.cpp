@@ -360,6 +360,10 @@ Summary summary_of_answers(const Study& study, const Table& table) {
   made.laws = law_tables(study);
   made.densities = row_densities(study, table);
   made.warnings = rate_warnings(study, made.tables);
+  if (study.measure.wants("localisation_ellipse") && is_weighted(table))
+    made.warnings.emplace_back(
+        "localisation_ellipse: no ellipses of errors of place: they are of rows that count alike, "
+        "and these have weights");
   if (weighted) {
     add(drawn_from_table(study, table), "none");
     for (std::string& one : weight_warnings(study, table)) made.warnings.push_back(std::move(one));

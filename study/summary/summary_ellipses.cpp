@@ -61,7 +61,7 @@ std::vector<SummaryTable> ellipse_tables(const Study& study, const Cells& cells,
                                          const std::string& suffix, const std::string& along,
                                          const Table& table) {
   std::vector<SummaryTable> all;
-  if (!study.measure.wants("localisation_ellipse")) return all;
+  if (!study.measure.wants("localisation_ellipse") || is_weighted(table)) return all;
   const double confidence = study.summary.confidence;
   for (const Column& column : table.columns) {
     if (!column.name.starts_with(north_error) || column.role != Column::Role::measure) continue;
