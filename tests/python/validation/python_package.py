@@ -601,20 +601,6 @@ class Studies(unittest.TestCase):
         np.testing.assert_array_equal(again.table.far, again.table.strength_db > 10.0)
         self.assertNotIn("twice", asdic.read_study(self.output).table)
 
-    def test_what_is_kept_of_rows(self):
-        asdic.study(self.s, self.output, realisations=4, vary=self.vary,
-                    measure={"detection": {"by": "receiver"}, "detections": "all",
-                             "spectra": {"every": 2, "resolution": 5.0, "low": 900.0,
-                                         "high": 1100.0}},
-                    set={"pings.samples": "baseband"})
-        file = asdic.open(self.output)
-        found = file.asdic.table("detections")
-        table = asdic.read_study(self.output).table
-        hits = found[found.owner == 0].groupby("index").snr_db.max()
-        np.testing.assert_array_equal(sorted(hits.index), table.index[table.detected == 1])
-        self.assertEqual(file["spectra/level_db"].shape, (2, 40))
-        np.testing.assert_allclose(file["spectra/frequency"], 902.5 + 5.0 * np.arange(40))
-
     def test_a_file_of_a_study(self):
         found = asdic.study(SCENARIOS / "studies/known_answer.toml", self.output,
                             set={"study.realisations": 50})
