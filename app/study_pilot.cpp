@@ -93,7 +93,7 @@ std::string memory_text(const Pilot& pilot, int threads) {
                         byte_count(pilot.budget));
   const double rows = static_cast<double>(pilot.count);
   constexpr double in_memory = study::ColumnValues::most_in_memory;
-  const double summary = std::min(rows, in_memory) * pilot.file_row + 64.0 * rows;
+  const double summary = std::min(rows, in_memory) * pilot.file_row + 160.0 * rows;
   text +=
       fmt::format("\n           and up to {} for the summary at the end\n", byte_count(summary));
   text += fmt::format("file       {} a row", byte_count(pilot.file_row));

@@ -111,6 +111,7 @@ void ColumnValues::grow() {
     memory_ = std::vector<double>();  // {} would keep its memory
     malloc_trim(0);                   // what malloc keeps of it would be all that is saved
     file_ = std::move(file);
+    file_->rest();
   } else if (size_ == file_->capacity() && !file_->reserve(size_ + size_ / 2 / piece * piece)) {
     memory_.assign(data_, data_ + size_);
     file_.reset();

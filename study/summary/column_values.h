@@ -16,7 +16,7 @@ namespace asdic::detail::study {
 /// column stays in memory.
 class ColumnValues {
  public:
-  static constexpr std::size_t most_in_memory = std::size_t{1} << 20;  // 8 MB
+  static constexpr std::size_t most_in_memory = std::size_t{1} << 17;  // 1 MB
 
   ColumnValues() noexcept;
   ColumnValues(std::initializer_list<double> values);
