@@ -134,7 +134,8 @@ study::Table first_rows(study::Table table, std::uint64_t end) {
       std::lower_bound(table.index.begin(), table.index.end(), end) - table.index.begin();
   table.index.resize(static_cast<std::size_t>(rows));
   table.valid.resize(static_cast<std::size_t>(rows));
-  for (std::vector<double>& column : table.values) column.resize(static_cast<std::size_t>(rows));
+  for (study::ColumnValues& column : table.values)
+    while (column.size() > table.index.size()) column.pop_back();
   return table;
 }
 

@@ -28,11 +28,11 @@ StudyResult shown(const detail::study::StudyFile& file) {
     result.values.emplace_back(table.values[i].begin(), table.values[i].end());
     table.values[i].clear();
   }
-  detail::study::Table own = file.own();
+  const detail::study::Table own = file.own();
   for (std::size_t i = 0; i < own.columns.size(); ++i) {
     result.columns.push_back(own.columns[i].name);
     result.units.push_back(own.columns[i].unit == "1" ? "" : own.columns[i].unit);
-    result.values.push_back(std::move(own.values[i]));
+    result.values.emplace_back(own.values[i].begin(), own.values[i].end());
   }
   return result;
 }
@@ -87,7 +87,7 @@ detail::study::EnoughRows enough_of(const StudyOptions& options) {
     for (std::size_t i = 0; i < rows.columns.size(); ++i) {
       told.columns.push_back(rows.columns[i].name);
       told.units.push_back(rows.columns[i].unit == "1" ? "" : rows.columns[i].unit);
-      told.values.push_back(rows.values[i]);
+      told.values.emplace_back(rows.values[i].begin(), rows.values[i].end());
     }
     return options.enough(told);
   };

@@ -53,8 +53,8 @@ void StudyFileWriter::write_table() {
   for (std::size_t i = 0; i < own.columns.size(); ++i) {
     const Column& c = own.columns[i];
     const std::string path = "table/" + c.name;
-    file_.write<double>(path, own.values[i], {own.values[i].size()});
-    noted(path, own.values[i]);
+    file_.write<double>(path, own.values[i].span(), {own.values[i].size()});
+    noted(path, own.values[i].span());
     describe_column(file_, path, c);
     file_.set_attribute(path, "role", "measure");
     file_.set_attribute(path, "formula", c.formula);

@@ -86,7 +86,7 @@ shifted = { value = "margin / (depth - 30)", otherwise = -1 }
     throw std::runtime_error(name);
   };
   const auto expect = [&](const std::string& name, const std::vector<double>& truth) {
-    const std::vector<double> found = column(name);
+    const ColumnValues found = column(name);
     ASSERT_EQ(found.size(), truth.size());
     for (std::size_t i = 0; i < truth.size(); ++i)
       EXPECT_TRUE(found[i] == truth[i] || (std::isnan(found[i]) && std::isnan(truth[i])))
