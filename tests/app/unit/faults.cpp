@@ -109,7 +109,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Fault{"info none.h5", 2, {"none.h5", "found no such file", "expected"}},
         Fault{"info empty.h5", 2, {"empty.h5: found an empty file, expected"}},
-        Fault{"plot empty.h5", 2, {"empty.h5: found an empty file", "asdic ping, area, st"}},
+        Fault{"plot empty.h5", 2, {"empty.h5: found an empty file", "asdic ping, area, place, st"}},
         Fault{"ping empty.toml", 2, {"empty.toml: found an empty file, expected a s"}},
         Fault{"plot study.toml", 2, {"study.toml:1: study: found a study, expected a scenario"}},
         Fault{"ping study.toml", 2, {"study.toml:1: study: found a study, expected"}},

@@ -96,9 +96,10 @@ TEST(Pilot, PredictsWhatTheWholeTakes) {
     static_cast<void>(realiser.realise(index, &cost));
     took += cost.total;
   }
-  // Rows of microseconds on a machine that others use, too: a factor, not an interval.
-  EXPECT_LT(made.processor.total, 2.0 * took);
-  EXPECT_GT(made.processor.total, 0.5 * took);
+  // Rows of half a millisecond on a machine that others use, too, whose caches they empty: a factor
+  // that tells a sum from a mean, and no more.
+  EXPECT_LT(made.processor.total, 10.0 * took);
+  EXPECT_GT(made.processor.total, 0.1 * took);
   EXPECT_LE(made.processor.interval.low, made.processor.total);
   EXPECT_GE(made.processor.interval.high, made.processor.total);
   double stages = 0.0;
