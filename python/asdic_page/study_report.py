@@ -219,7 +219,8 @@ def of_study(path) -> tuple:
             vary = {}
         with style.look("light"):
             pictures = figures(study_pictures.draw(study))
-        by = [t for t in study.summary if t.name in ("statistics", "roc_area", "drawn_from") or "_by_" in t.name]
+        by = [t for t in study.summary if t.name in ("statistics", "roc_area", "drawn_from")
+              or "_by_" in t.name or t.name.startswith(("pings", "first_detection", "map_"))]
         influence = [t for t in study.summary if t.name in ("sensitivity", "interactions")]
         body = [f"<h1>{escape(study.title or Path(path).name)}</h1><p class=\"note\">{escape(study.heading())}</p>",
                 answer(study), warnings(f), of_weights(study, f["summary"]), "<h2>What was drawn</h2>", inputs(study, vary), false_alarms(study),

@@ -15,7 +15,8 @@ from .data import InputError
 
 KIND = "asdic study"
 
-PROPORTIONS = {"pd": "probability of detection", "pfa": "probability of false alarm", "p": "probability"}
+PROPORTIONS = {"pd": "probability of detection", "pfa": "probability of false alarm", "p": "probability",
+               "ptrack": "probability of track initiation"}
 DECIBELS = "_db"
 DEGREES = "_deg"
 SHORT = {"snr": "SNR"}
@@ -28,6 +29,8 @@ def spoken(name: str) -> str:
         return WHOLE[name]
     word, _, rest = name.partition("_")
     if word in PROPORTIONS:
+        if rest == "ever" or rest.startswith("ever_"):  # over a run of pings
+            return f"{PROPORTIONS[word]} in any ping" + (f", {rest[5:]}" if rest[5:] else "")
         return f"{PROPORTIONS[word]}, {rest}" if rest else PROPORTIONS[word]
     words = name.replace(DECIBELS + "_", "_", 1)  # a target's name may follow
     words = words.removesuffix(DECIBELS).removesuffix(DEGREES).split("_")

@@ -11,7 +11,7 @@ from .study_data import Column, Study, SummaryTable, spoken
 
 MOST_PANELS = 12
 MOST_BESIDE = 6  # inputs of two maps side by side
-YES_OR_NO = ("detected", "false_alarm", "rare_event")
+YES_OR_NO = ("detected", "false_alarm", "initiated", "rare_event")
 CELL_WORDS = {"pfa": "false-alarm rate", "k_shape": "shape of the K distribution (high: Rayleigh)"}
 RARE = "p_event"  # drawn from a proposal or not: by its logarithm
 WORTH = 10.0  # effective rows of an event that say something of its least probability
@@ -148,7 +148,7 @@ def title(table: SummaryTable, names: list) -> str:
     every = len(varying(table))
     some = f", {len(names)} of {every} measures" if len(names) < every else ""
     alone = [n for n in names if not beside(table, n)] or names
-    what = spoken(alone[0]) if alone[0].startswith(("pd", "pfa", "p_", RARE)) else "means"
+    what = spoken(alone[0]) if alone[0].startswith(("pd", "pfa", "p_", "ptrack", RARE)) else "means"
     if table.name.startswith(ELLIPSES):
         what = "errors of place, and their ellipses"
     what += ", and the false-alarm rate," if len(alone) < len(names) else ""
@@ -432,7 +432,7 @@ def draw_expected(a, edges, law, rows, scale=1.0):
 
 
 def draw_histograms(study: Study) -> dict:
-    columns = [c for c in study.columns if not c.is_constant()]
+    columns = [c for c in study.columns if not c.is_constant() and c.role != "ping"]
     all_of_them = len(columns)
     columns = sorted(columns, key=lambda c: c.role != "measure")[:MOST_PANELS]
     if not columns:
@@ -626,7 +626,17 @@ def draw_convergence(study: Study) -> dict:
     return {"convergence": fig}
 
 
-ALL = (draw_by, draw_map, draw_ellipses, draw_roc, draw_histograms, draw_sensitivity, draw_interactions,
+def draw_places(study: Study) -> dict:
+    from . import study_places
+    return study_places.draw(study)
+
+
+def draw_pings(study: Study) -> dict:
+    from . import study_pings
+    return study_pings.draw(study)
+
+
+ALL = (draw_by, draw_map, draw_places, draw_pings, draw_ellipses, draw_roc, draw_histograms, draw_sensitivity, draw_interactions,
        draw_convergence)
 
 
@@ -648,6 +658,9 @@ def names_of(study: Study, one) -> list:
         return [t.name for t in study.summary if "_by_" in t.name]
     if one is draw_ellipses:
         return [f"{t.name}_plan" for t in study.summary if t.name.startswith("ellipses") and "_by_" in t.name]
+    if one in (draw_places, draw_pings):
+        from . import study_pings, study_places
+        return (study_places if one is draw_places else study_pings).names_of(study)
     return [{draw_roc: "roc", draw_histograms: "histograms", draw_sensitivity: "sensitivity",
              draw_interactions: "interactions", draw_convergence: "convergence"}[one]]
 

@@ -23,6 +23,8 @@ std::string_view name(Column::Role role) noexcept {
       return "reuse";
     case Column::Role::weight:
       return "weight";
+    case Column::Role::ping:
+      return "ping";
     case Column::Role::measure:
       break;
   }
@@ -33,6 +35,7 @@ Column::Role role(const std::string& text) {
   return text == "input"    ? Column::Role::input
          : text == "reuse"  ? Column::Role::reuse
          : text == "weight" ? Column::Role::weight
+         : text == "ping"   ? Column::Role::ping
                             : Column::Role::measure;
 }
 

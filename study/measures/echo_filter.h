@@ -1,10 +1,12 @@
 #pragma once
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <vector>
 
 #include "sonar/ping/ping.h"
 #include "study/plan/measure_plan.h"
+#include "study/plan/no_value.h"
 
 namespace asdic::detail::study {
 
@@ -15,6 +17,15 @@ struct FilterAnswer {
   double absent = 0.0;   ///< the same at a time without any echo; NaN: there is none in the record
   double threshold = 0.0, absent_threshold = 0.0;  ///< that the false-alarm probability asks for
 };
+
+/// Whether it is over its threshold, 0 or 1; NaN: not known, which is not the same as missed.
+[[nodiscard]] inline double over_threshold(double statistic, double threshold) {
+  if (std::isnan(statistic)) return no_value;
+  return statistic > threshold ? 1.0 : 0.0;
+}
+[[nodiscard]] inline double over_threshold(const FilterAnswer& answer) {
+  return over_threshold(answer.present, answer.threshold);
+}
 
 /// Means of |y|² over noise and scatterers, at the times that a target's filter looks at.
 struct ExpectedAnswer {

@@ -6,6 +6,7 @@
 
 #include "sonar/ping/ping.h"
 #include "study/measures/echo_filter.h"
+#include "study/measures/ping_run.h"
 #include "study/measures/realisation.h"
 #include "study/measures/receiver_measure.h"
 #include "study/plan/measure_plan.h"
@@ -23,7 +24,8 @@ class Collector {
   explicit Collector(std::vector<double>& values) : values_(&values) {}
 
   /// \param name  of the column, in [a-z0-9_]   \param unit  "m/s", "1"
-  void add(std::string_view name, std::string_view unit, std::string_view meaning, double value);
+  void add(std::string_view name, std::string_view unit, std::string_view meaning, double value,
+           Column::Role role = Column::Role::measure);
   /// What columns are called from here on after their names: "_rock"; "" nothing.
   void of(std::string suffix) { suffix_ = std::move(suffix); }
 
@@ -41,6 +43,7 @@ struct MeasuredPing {
   const PingRecord* record = nullptr;         ///< null: columns alone are wanted
   ReceiverAnswers receiver = {};              ///< [targets], if the plan uses it
   std::vector<ExpectedAnswer> expected = {};  ///< [targets], if the plan's background is expected
+  std::vector<RunPing> run = {};              ///< [pings of the plan's run], if it has one
 
   [[nodiscard]] explicit operator bool() const noexcept { return record != nullptr; }
   /// Of one target. There is a record.

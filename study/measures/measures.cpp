@@ -10,12 +10,12 @@
 namespace asdic::detail::study {
 
 void Collector::add(std::string_view name, std::string_view unit, std::string_view meaning,
-                    double value) {
+                    double value, Column::Role role) {
   if (columns_ != nullptr)
     columns_->push_back({.name = std::string(name) + suffix_,
                          .unit = std::string(unit),
                          .meaning = std::string(meaning),
-                         .role = Column::Role::measure});
+                         .role = role});
   if (values_ != nullptr) values_->push_back(value);
 }
 
@@ -99,13 +99,76 @@ void add_parts(const Timings& wall, double processor, RowCost& cost) {
   cost[Stage::noise] += processor * wall.noise / all;
 }
 
+/// What the simulation expects beside echoes, by draws or by a sum; none where the plan's
+/// background is another.
+std::vector<ExpectedAnswer> background_of(const PingSimulator& simulator, const PingRecord& record,
+                                          const MeasurePlan& plan,
+                                          const std::shared_ptr<SharedPropagation>& shared) {
+  using Background = MatchedFilterPlan::Background;
+  if (!plan.uses_matched_filter()) return {};
+  if (plan.matched_filter.background == Background::expected)
+    return expected_of(simulator, record, plan, shared);
+  if (plan.matched_filter.background == Background::summed)
+    return summed_answers(simulator, record, plan.matched_filter, plan.array, bool(plan.cells));
+  return {};
+}
+
+/// What another ping than the plan's own is asked: whether its targets are detected.
+MeasurePlan detection_alone(const MeasurePlan& plan, int ping) {
+  MeasurePlan asked;
+  asked.ping = ping;
+  asked.array = plan.array;
+  asked.matched_filter = plan.matched_filter;
+  asked.detection = plan.detection;
+  asked.receiver = plan.receiver;
+  return asked;
+}
+
+/// \param record, expected  of the plan's own ping, and what draws expect there
+/// \param receiver  of that ping   \throws InputError
+std::vector<RunPing> run_of(const PingSimulator& simulator, const MeasurePlan& plan,
+                            const PingRecord& record, const std::vector<ExpectedAnswer>& expected,
+                            const ReceiverAnswers& receiver,
+                            const std::shared_ptr<SharedPropagation>& shared) {
+  const PingRunPlan& run = *plan.run;
+  if (simulator.pings() < run.first + run.count - 1)
+    throw InputError(
+        {.where = "pings.count",
+         .got = std::to_string(simulator.pings()) + " pings",
+         .expected = std::to_string(run.first + run.count - 1) + " or more: measure.pings"});
+  std::vector<RunPing> made;
+  const double start = simulator.transmission(run.first).time;
+  for (int ping = run.first; ping < run.first + run.count; ++ping) {
+    const bool own = ping == plan.ping;
+    const MeasurePlan asked = detection_alone(plan, ping);
+    PingRecord other;
+    if (!own) other = received(simulator, asked);
+    const PingRecord& heard = own ? record : other;
+    RunPing one{.ping = ping, .time = heard.start_time - start};
+    for (const Kinematics& target : heard.targets)
+      one.range.push_back((target.position - heard.platform.position).template head<2>().norm());
+    if (plan.detection->by == DetectionPlan::By::receiver) {
+      const ReceiverAnswers answers =
+          own ? receiver : receiver_answers(simulator, heard, plan.receiver, plan.array);
+      for (const ReceiverAnswer& answer : answers.targets)
+        one.detected.push_back(answer.hit ? 1.0 : 0.0);
+    } else {
+      const std::vector<ExpectedAnswer> drawn =
+          own ? expected : background_of(simulator, heard, asked, shared);
+      for (std::size_t t = 0; t < heard.targets.size(); ++t)
+        one.detected.push_back(over_threshold(filter_answer(
+            simulator, heard, plan.matched_filter, plan.array, static_cast<int>(t),
+            plan.false_alarm_probability(), drawn.empty() ? ExpectedAnswer{} : drawn[t])));
+    }
+    made.push_back(std::move(one));
+  }
+  return made;
+}
+
 /// One pass over the measures that are wanted.
 void walk(std::span<const AnyMeasure> measures, MeasuredPing ping, Collector& to) {
   const std::vector<Target>& targets = ping.scenario.targets;
   ping.receiver.targets.resize(targets.size());
-  if (ping && ping.plan.uses_receiver())
-    ping.receiver =
-        receiver_answers(*ping.simulator, *ping.record, ping.plan.receiver, ping.plan.array);
   for (std::size_t t = 0; t < targets.size(); ++t) {
     to.of(targets.size() > 1 ? '_' + slug(targets[t].name) : "");
     for (const AnyMeasure& measure : measures)
@@ -133,24 +196,24 @@ Measured measure(const Study& study, const PingSimulator& simulator,
   CostClock clock(cost);
   Measured made{.record = received(simulator, plan)};
   if (cost != nullptr) add_parts(made.record.timings, clock.lap(), *cost);
-  std::vector<ExpectedAnswer> expected;
-  if (plan.uses_matched_filter() &&
-      plan.matched_filter.background == MatchedFilterPlan::Background::expected)
-    expected = expected_of(simulator, made.record, plan, shared);
-  if (plan.uses_matched_filter() &&
-      plan.matched_filter.background == MatchedFilterPlan::Background::summed)
-    expected =
-        summed_answers(simulator, made.record, plan.matched_filter, plan.array, bool(plan.cells));
+  std::vector<ExpectedAnswer> expected = background_of(simulator, made.record, plan, shared);
   clock.lap(Stage::draws);
   if (plan.cells) made.cells = counted_cells(simulator, made.record, plan, expected);
   clock.lap(Stage::cells);
+  ReceiverAnswers receiver;
+  if (plan.uses_receiver())
+    receiver = receiver_answers(simulator, made.record, plan.receiver, plan.array);
+  std::vector<RunPing> run;
+  if (plan.run) run = run_of(simulator, plan, made.record, expected, receiver, shared);
   Collector collector(made.values);
   walk(measures,
        {.plan = study.measure,
         .scenario = simulator.scenario(),
         .simulator = &simulator,
         .record = &made.record,
-        .expected = std::move(expected)},
+        .receiver = std::move(receiver),
+        .expected = std::move(expected),
+        .run = std::move(run)},
        collector);
   clock.lap(Stage::measures);
   return made;

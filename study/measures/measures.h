@@ -10,8 +10,10 @@
 #include "study/measures/kinds/levels.h"
 #include "study/measures/kinds/matched_filter.h"
 #include "study/measures/kinds/of_the_receiver.h"
+#include "study/measures/kinds/over_pings.h"
 #include "study/measures/kinds/series_level.h"
 #include "study/measures/kinds/strongest_path.h"
+#include "study/measures/kinds/target_place.h"
 #include "study/measures/measure.h"
 #include "study/plan/study.h"
 
@@ -23,9 +25,9 @@ inline constexpr std::array<AnyMeasure, sizeof...(M)> measure_list{any_measure<M
 /// Every measure, in the order of the columns. A new one is one file and one name here.
 inline constexpr std::span<const AnyMeasure> all_measures =
     measure_list<EchoLevel, ReverberationLevel, NoiseLevel, EchoToBackground, SignalExcess, Paths,
-                 EchoTime, DetectionSignalExcess, StrongestPath, MatchedFilterAnswer,
-                 DetectionByReceiver, LocalisationError, LocalisationEllipse, FalseAlarms,
-                 SeriesLevel>;
+                 EchoTime, DetectionSignalExcess, StrongestPath, TargetPlace, OverPings,
+                 MatchedFilterAnswer, DetectionByReceiver, LocalisationError, LocalisationEllipse,
+                 FalseAlarms, SeriesLevel>;
 
 /// The columns of a study's measures. \param scenario  of any realisation: its targets
 [[nodiscard]] std::vector<Column> measure_columns(

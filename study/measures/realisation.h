@@ -13,7 +13,8 @@ namespace asdic::detail::study {
 
 /// A column of a study's table.
 struct Column {
-  enum class Role { input, measure, reuse, weight };
+  /// `ping`: of one ping of several, which has no tables of its own.
+  enum class Role { input, measure, ping, reuse, weight };
   std::string name;  ///< "wind_speed", "echo_level_db"; [a-z0-9_]
   std::string unit;  ///< "m/s", "dB re 1 µPa", "1"
   std::string meaning;

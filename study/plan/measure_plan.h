@@ -47,6 +47,15 @@ struct CellPlan {
   std::vector<double> edges;  ///< of the bins of time [s]
 };
 
+/// Detection in several pings of a realisation, one after the other.
+struct PingRunPlan {
+  int first = 1;             ///< of the scenario's pings, counted from 1
+  int count = 2;             ///< of them
+  int hits = 0, within = 0;  ///< a track begins after so many hits within so many pings in a row;
+                             ///< 0: nobody asks
+  [[nodiscard]] bool initiates() const noexcept { return within > 0; }
+};
+
 /// Detection of each target.
 struct DetectionPlan {
   enum class By {
@@ -86,6 +95,7 @@ struct MeasurePlan {
   Needs needs;                       ///< of any of these
   MatchedFilterPlan matched_filter;  ///< how the matched filter's answers are had
   std::optional<DetectionPlan> detection;
+  std::optional<PingRunPlan> run;  ///< of pings, each with a detection
   std::optional<CellPlan> cells;   ///< of the matched filter
   ProcessingSettings receiver;     ///< of detection by = "receiver", localisation
   std::vector<OwnMeasure> own;     ///< after all others

@@ -22,6 +22,14 @@ struct SummaryAxis {
   bool equal_count = false;   ///< … or holding equally many rows
 };
 
+/// Cells of place: east and north, or rings and sectors, for each of some depths.
+struct SummaryMap {
+  bool polar = false;                  ///< range and true bearing instead of east and north
+  SummaryAxis across, up;              ///< east and north; range and bearing
+  std::string range, bearing;          ///< columns that east and north are had from; "": from none
+  std::optional<SummaryAxis> depth{};  ///< none: all depths together
+};
+
 /// A measure that is a formula of what the row holds: [summary.own].
 struct OwnFormula {
   std::string name, unit = "1", meaning;
@@ -41,9 +49,10 @@ struct SummaryPlan {
   /// Each along one axis or over two. Not given: along every input by itself.
   std::vector<std::vector<SummaryAxis>> by;
   std::vector<OwnFormula> own{};  ///< in an order in which each looks at those before it alone
-  bool roc = true;                ///< where the matched filter's answers are columns
-  bool convergence = true;        ///< of the first measure
-  bool sensitivity = true;        ///< of every measure to every input
+  std::optional<SummaryMap> map{};
+  bool roc = true;          ///< where the matched filter's answers are columns
+  bool convergence = true;  ///< of the first measure
+  bool sensitivity = true;  ///< of every measure to every input
 };
 
 }  // namespace asdic::detail::study

@@ -56,6 +56,35 @@ DetectionPlan read_detection(TomlTable& measures) {
   return plan;
 }
 
+/// `true`, all pings of the scenario, or a table. \param pings  that the scenario has
+PingRunPlan read_run(TomlTable& measures, int pings) {
+  PingRunPlan plan{.count = pings};
+  if (pings < 2)
+    throw measures.fault("pings",
+                         "a scenario with two pings or more: \"pings.count\" = 10 in [set]",
+                         "a scenario with one ping");
+  if (!measures.is_table("pings")) return plan;
+  TomlTable table = measures.table("pings");
+  plan.first = static_cast<int>(table.integer("first", 1, pings - 1, 1));
+  const int most = pings - plan.first + 1;
+  plan.count = static_cast<int>(table.integer("count", 2, most, most));
+  if (table.has("initiation")) {
+    const std::vector<double> rule =
+        table.numbers("initiation", {.noun = "number of pings", .low = 1.0, .high = 1e6});
+    const auto whole = [](double x) { return x == std::floor(x); };
+    if (rule.size() != 2 || !whole(rule[0]) || !whole(rule[1]) || rule[0] > rule[1] ||
+        rule[1] > plan.count)
+      throw table.fault("initiation",
+                        "[m, n], m hits within n pings in a row: whole numbers, m at most n, and n "
+                        "at most the " +
+                            std::to_string(plan.count) + " pings");
+    plan.hits = static_cast<int>(rule[0]);
+    plan.within = static_cast<int>(rule[1]);
+  }
+  table.finish();
+  return plan;
+}
+
 /// `true`, or a table: bins of time over the record as the scenario has it.
 CellPlan read_cells(TomlTable& measures, const Scenario& scenario) {
   CellPlan plan;
@@ -129,6 +158,11 @@ MeasurePlan read_measure(TomlTable table, const Scenario& scenario) {
   if (plan.wants(DetectionSignalExcess::name) && !plan.detection)
     throw table.fault(std::string(DetectionSignalExcess::name),
                       "a detection with it, whose receiver and false-alarm probability it is of");
+  if (read_wanted(table, "pings")) {
+    if (!plan.detection)
+      throw table.fault("pings", "a detection with them, which is looked for in each");
+    plan.run = read_run(table, static_cast<int>(pings));
+  }
   plan.series_every = read_series(table);
   const auto phones =
       static_cast<int>(scenario.arrays[static_cast<std::size_t>(plan.array)].phones.size());

@@ -45,6 +45,7 @@ void StudyFileWriter::write_table() {
     file_.set_attribute(path, "role",
                         c.role == Column::Role::input    ? "input"
                         : c.role == Column::Role::weight ? "weight"
+                        : c.role == Column::Role::ping   ? "ping"
                                                          : "measure");
     file_.attach_scales(path, {"index"});
   }

@@ -102,14 +102,20 @@ bool is_proportion(const Column& column) noexcept {
     return column.name == name || column.name.starts_with(std::string(name) + '_');
   };
   return column.role == Column::Role::measure &&
-         (is("detected") || is("false_alarm") || column.name == rare_event_column);
+         (is("detected") || is("false_alarm") || is("initiated") ||
+          column.name == rare_event_column);
 }
 
 std::string proportion_name(const Column& column) {
   if (!column.formula.empty()) return "p_" + column.name;
   if (column.name == rare_event_column) return rare_event_probability;
-  const std::string_view word = column.name.starts_with("detected") ? "detected" : "false_alarm";
-  return (word == "detected" ? "pd" : "pfa") + column.name.substr(word.size());
+  struct Word {
+    std::string_view of_column, of_tables;
+  };
+  for (const Word& word : {Word{"detected", "pd"}, Word{"false_alarm", "pfa"}})
+    if (column.name.starts_with(word.of_column))
+      return std::string(word.of_tables) + column.name.substr(word.of_column.size());
+  return "ptrack" + column.name.substr(std::string_view("initiated").size());
 }
 
 std::optional<std::size_t> first_question(std::span<const Column> columns) noexcept {
@@ -355,6 +361,8 @@ Summary summary_of_answers(const Study& study, const Table& table) {
             (blocks                           ? "the rows A and B of every block alone"
              : study.design == Design::random ? "independent rows"
                                               : "rows taken for independent (rather too wide)"));
+  add(map_tables(study, table), method);
+  if (study.measure.run) add(ping_tables(study, table), method);
   add(cell_tables(study, table), "docs/theory/studies.md, false-alarm rates");
   if (plan.convergence) add(convergence_table(study, table), method);
   made.laws = law_tables(study);

@@ -14,8 +14,8 @@ class Cells;
 
 /// A measure that is 0 or 1, whose mean is a probability.
 [[nodiscard]] bool is_proportion(const Column& column) noexcept;
-/// "pd" of "detected", "pfa" of "false_alarm", with a target's suffix; "p_loud" of one's own
-/// "loud".
+/// "pd" of "detected", "pfa" of "false_alarm", "ptrack" of "initiated", with a target's suffix;
+/// "p_loud" of one's own "loud".
 [[nodiscard]] std::string proportion_name(const Column& column);
 /// The column that the study is about: the first proportion, else the first measure. None: no
 /// measures.
@@ -56,6 +56,12 @@ void check_summary_names(const Study& study);
                                                        const std::string& suffix,
                                                        const std::string& along,
                                                        const Table& table);
+/// Of a run of pings, for each target: probabilities against the number of the ping ("pings"), and
+/// when it is detected first ("first_detection").
+[[nodiscard]] std::vector<SummaryTable> ping_tables(const Study& study, const Table& table);
+/// Of [summary.map], for each cell of place and depth: proportions ("map_pd"), and means and
+/// quantiles of all other measures ("map_means").
+[[nodiscard]] std::vector<SummaryTable> map_tables(const Study& study, const Table& table);
 /// Receiver operating characteristic of each target's matched filter, and the area under it.
 [[nodiscard]] std::vector<SummaryTable> roc_tables(const SummaryPlan& plan, const Table& table);
 /// Of the cells without an echo: rates by time, at every power of ten by counting or by a tail that

@@ -1,7 +1,5 @@
 #include "study/measures/kinds/matched_filter.h"
 
-#include <cmath>
-
 #include "study/measures/echo_filter.h"
 
 namespace asdic::detail::study {
@@ -14,14 +12,10 @@ void MatchedFilterAnswer::of_target(const MeasuredPing& ping, std::size_t target
                            static_cast<int>(target), plan.false_alarm_probability(),
                            ping.expected.empty() ? ExpectedAnswer{} : ping.expected[target]);
   if (plan.detection && plan.detection->by == DetectionPlan::By::matched_filter) {
-    const auto over = [](double statistic, double threshold) {
-      if (std::isnan(statistic)) return no_value;  // not known, which is not the same as missed
-      return statistic > threshold ? 1.0 : 0.0;
-    };
     to.add("detected", "1", "matched filter over its threshold at the echo's time; NaN: not known",
-           over(answer.present, answer.threshold));
+           over_threshold(answer));
     to.add("false_alarm", "1", "matched filter over its threshold where there is no echo",
-           over(answer.absent, answer.absent_threshold));
+           over_threshold(answer.absent, answer.absent_threshold));
   }
   to.add("snr_matched_db", "dB", "matched filter over its background at the echo's time",
          db_from_power(answer.present));
