@@ -130,8 +130,8 @@ std::string cut(const PingProcessor& processor, const ProcessedArray& made, int 
 /// docs/theory/processing.md, eq. (13)
 std::string scattered(const PingProcessor& processor, const ProcessedArray& made, int transmitter) {
   const PulseSettings& pulse = pulse_of(processor.scenario(), transmitter);
-  const bool sweep = std::holds_alternative<Lfm>(pulse.waveform) ||
-                     std::holds_alternative<Hfm>(pulse.waveform);
+  const bool sweep =
+      std::holds_alternative<Lfm>(pulse.waveform) || std::holds_alternative<Hfm>(pulse.waveform);
   const bool several = processor.settings().detector.sub_bands > 1,
              sudden = sweep && pulse.window != PulseWindow::hann;
   if (made.result.detections.empty() || (!several && !sudden)) return "";
