@@ -205,15 +205,22 @@ def name_ticks(column):
     return there, [style.shorten(n, 18) for n in names]
 
 
-def numbers(axes, across, down, value, image) -> None:
-    """Writes the value of each cell into it, if there is room."""
+def numbers(axes, across, down, value, image, low, high, count) -> None:
+    """Writes the value of each cell into it, if there is room; if there is more, its interval and how many it is of."""
     if value.shape[0] > 12 or value.shape[1] > 10:
         return
+    roomy = value.shape[0] <= 8 and value.shape[1] <= 6
+
+    def short(v):
+        return f"{v:.2g}" if v < 0.1 else f"{v:.2f}"
     for (column, row), v in np.ndenumerate(value):
         if np.isfinite(v):
             middle = across[column:column + 2].mean(), down[row:row + 2].mean()
-            axes.text(*middle, f"{v:.2g}" if v < 0.1 else f"{v:.2f}", ha="center", va="center",
-                      fontsize=8, color=style.readable_on(image.to_rgba(v)))
+            text = short(v)
+            if roomy:
+                text += f"\n{short(low[column, row])} to {short(high[column, row])}\nof {count[column, row]:.0f}"
+            axes.text(*middle, text, ha="center", va="center", fontsize=6.5 if roomy else 8, linespacing=1.1,
+                      color=style.readable_on(image.to_rgba(v)))
 
 
 def draw_map(study: Study) -> dict:
@@ -247,7 +254,8 @@ def draw_map(study: Study) -> dict:
             a.set_ylabel(y.label())
             fig.colorbar(image, ax=a, label=table[name].label())
             if probability and len(names) == 1:
-                numbers(a, across, down, value, image)
+                low, high, count = (table[n].values.reshape(cells) for n in (f"{name}_low", f"{name}_high", "count"))
+                numbers(a, across, down, value, image, low, high, count)
         figures[table.name] = fig
     return figures
 
