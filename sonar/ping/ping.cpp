@@ -458,6 +458,9 @@ PingSimulator::MeanSea PingSimulator::mean_sea(int ping, int array) const {
     refuse("interferer", "ships that are heard", "none, to sum what is received");
   const Emission emission = emit(transmission(ping), ping);
   const PingGeometry& geometry = emission.geometry;
+  if (geometry.motion(array).deforms())
+    refuse("array", "phones that move against one another while they listen",
+           "a shape that stays, to sum what it receives");
   MeanSea sea{.streams = std::make_shared<const ReverberationStreams>(),
               .phones = geometry.phones_from(
                   geometry.reverberation_point(array, emission.pulse.centre_frequency()), array),
