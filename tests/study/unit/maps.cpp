@@ -10,6 +10,7 @@
 #include "study/summary/intervals.h"
 #include "study/summary/summary.h"
 #include "support/plain_sea.h"
+#include "support/summary_tables.h"
 #include "support/temporary_directory.h"
 
 // [summary.map]: cells of place and depth.
@@ -40,18 +41,6 @@ Table disc(std::uint64_t seed, std::size_t rows) {
     table.values[4].push_back(i % 5 == 0 ? -infinity : -range);
   }
   return table;
-}
-
-const SummaryTable& named(const std::vector<SummaryTable>& tables, const std::string& name) {
-  for (const SummaryTable& table : tables)
-    if (table.name == name) return table;
-  throw std::runtime_error("no table " + name);
-}
-
-const std::vector<double>& column(const SummaryTable& table, const std::string& name) {
-  for (std::size_t c = 0; c < table.columns.size(); ++c)
-    if (table.columns[c].name == name) return table.values[c];
-  throw std::runtime_error("no column " + name);
 }
 
 Study of_place(std::optional<SummaryAxis> depth = {}) {

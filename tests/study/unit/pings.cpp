@@ -12,6 +12,7 @@
 #include "study/summary/intervals.h"
 #include "study/summary/summary.h"
 #include "support/plain_sea.h"
+#include "support/summary_tables.h"
 #include "support/temporary_directory.h"
 
 // Detection over a run of pings: what a row says, and what the tables say.
@@ -110,18 +111,6 @@ Table rows_of(std::uint64_t seed, std::size_t rows, double p, double lost) {
     }
   }
   return table;
-}
-
-const SummaryTable& named(const std::vector<SummaryTable>& tables, const std::string& name) {
-  for (const SummaryTable& table : tables)
-    if (table.name == name) return table;
-  throw std::runtime_error("no table " + name);
-}
-
-const std::vector<double>& column(const SummaryTable& table, const std::string& name) {
-  for (std::size_t c = 0; c < table.columns.size(); ++c)
-    if (table.columns[c].name == name) return table.values[c];
-  throw std::runtime_error("no column " + name);
 }
 
 TEST(PingTables, IntervalsHoldTheClosedFormsAsOftenAsTheySay) {

@@ -6,6 +6,7 @@
 #include "core/units.h"
 #include "study/reader/study_reader.h"
 #include "study/summary/summary.h"
+#include "support/summary_tables.h"
 
 // A run of pings of the known answer: a Swerling target in white noise, whose probabilities over
 // several pings are closed forms.
@@ -51,12 +52,6 @@ SummaryTable pings_of(const Study& study) {
   for (SummaryTable& one : summarise(study, table))
     if (one.name == "pings") return std::move(one);
   throw std::runtime_error("no table pings");
-}
-
-const std::vector<double>& column(const SummaryTable& table, const std::string& name) {
-  for (std::size_t c = 0; c < table.columns.size(); ++c)
-    if (table.columns[c].name == name) return table.values[c];
-  throw std::runtime_error("no column " + name);
 }
 
 /// Of ping k: SNR = RL + 10 lg E − NL, the target where the sound strikes it.
