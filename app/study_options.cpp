@@ -91,7 +91,7 @@ void add_study_options(const Command& command, StudyOptions& options) {
           "index (total_order); or once a rule holds, 'pd: low > 0.9 || high < 0.9', of mean, low, "
           "high, half_width and rows; repeated, all of them; looked at after 100, 200, ... 1000, "
           "2000, ... realisations or blocks; of --compare: of the paired difference")
-      .type_name("[NAME=]HALF_WIDTH|[NAME:]RULE")
+      .type_name("[NAME=]HALF_WIDTH|RULE")
       .one_at_a_time();
   command.add_flag("--fresh", options.fresh, "begin anew: what is there is written over");
   command.add_flag("--retry", options.retry,

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
-#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -13,6 +11,7 @@
 #include "core/geometry.h"
 #include "core/units.h"
 #include "processing/matched_filter.h"
+#include "processing/owned_tracks.h"
 #include "raytrace/propagation.h"
 #include "sonar/scenario/carried.h"
 
@@ -33,8 +32,6 @@ std::string six_digits(double value) {
   return text;
 }
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
-
 /// What a user should know of a record with next to no noise: the threshold is relative to a
 /// background of rounding and of the filters' own tails, and these are no Rayleigh background.
 /// Empty where all that was found is within what a recorder of 20 bits takes.
@@ -53,18 +50,6 @@ std::string rounding(const ProcessedArray& made, const ArrayRecording& received)
          ": " + std::to_string(faint) + " of " + std::to_string(all.size()) +
          " detections are more than 120 dB below the loudest sample: with so little noise in the "
          "record, rounding and the filters' own tails stand out of the background";
-}
-
-/// The target that most of a track's detections are of.
-int owner_of(const ContactTrack& track, const std::vector<const ProcessedPing*>& pings) {
-  std::map<int, int> votes;
-  for (const TrackPoint& p : track.points)
-    if (p.detection >= 0)
-      ++votes[pings[static_cast<std::size_t>(p.ping)]
-                  ->score.owner[static_cast<std::size_t>(p.detection)]];
-  const auto most = std::max_element(
-      votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-  return most == votes.end() ? -1 : most->first;
 }
 
 /// What a user should know of a towed line that bends while it listens: beams are formed for the
@@ -143,54 +128,30 @@ std::string scattered(const PingProcessor& processor, const ProcessedArray& made
                     "Hann window");
 }
 
-double error_of(const ProcessedTrack& made, const TrackPoint& p, const ProcessedPing& ping,
-                const Scenario& scenario) {
-  if (made.target < 0) return none;
-  const Vec3 truth =
-      scenario.targets[static_cast<std::size_t>(made.target)].track.at(p.time).position;
-  if (made.has_bearing) return (p.position - truth.head<2>()).norm();
-  // A range is from where the array received it; a track that coasts, from where it would have.
-  const double received =
-      p.detection >= 0 ? ping.array.result.detections[static_cast<std::size_t>(p.detection)].time
-                       : 2.0 * (p.time - ping.ping_time);
-  const Track& array = ping.array.places.array;
-  return std::abs(p.position.y() - separation(array.at(received).position, truth).range);
-}
-
 void track_array(const PingProcessor& processor, const std::vector<const ProcessedPing*>& pings,
                  const std::vector<int>& first_rows, ProcessedRun& run) {
+  std::vector<TrackedPing> tracked;
   bool sides = false, bearings = true;
-  for (const ProcessedPing* ping : pings)
-    for (const Detection& d : ping->array.result.detections) {
-      sides = sides || d.locations.size() > 1;
-      bearings = bearings && (d.locations.empty() || !std::isnan(d.locations[0].bearing));
+  for (const ProcessedPing* ping : pings) {
+    tracked.push_back(tracked_ping(processor, ping->array, ping->ping_time, ping->score.owner));
+    sides |= tracked.back().two_sides;
+    bearings &= tracked.back().bearings;
+  }
+  for (OwnedTrack& one :
+       owned_tracks(tracked, processor.scenario(), processor.settings().tracker)) {
+    ProcessedTrack made{.array = pings.front()->array.array,
+                        .side = one.side,
+                        .ambiguous = sides,
+                        .has_bearing = bearings,
+                        .track = std::move(one.track),
+                        .error = std::move(one.error),
+                        .target = one.target};
+    for (TrackPoint& p : made.track.points) {
+      const auto k = static_cast<std::size_t>(p.ping);
+      made.rows.push_back(p.detection < 0 ? -1 : first_rows[k] + p.detection);
+      p.ping = pings[k]->array.ping;
     }
-  for (int side = 0; side < (sides ? 2 : 1); ++side) {
-    std::vector<std::vector<Contact>> contacts;
-    std::vector<double> times;
-    for (const ProcessedPing* ping : pings) {
-      contacts.push_back(processor.contacts(ping->array, ping->ping_time, side));
-      std::erase_if(contacts.back(), [&](const Contact& c) {
-        const int owner = ping->score.owner[static_cast<std::size_t>(c.detection)];
-        return owner == direct_sound || owner == another_ping;
-      });
-      times.push_back(ping->ping_time);
-    }
-    for (ContactTrack& track : track_contacts(contacts, times, processor.settings().tracker)) {
-      ProcessedTrack made{.array = pings.front()->array.array,
-                          .side = side,
-                          .ambiguous = sides,
-                          .has_bearing = bearings,
-                          .track = std::move(track)};
-      made.target = owner_of(made.track, pings);
-      for (TrackPoint& p : made.track.points) {
-        const auto k = static_cast<std::size_t>(p.ping);
-        made.rows.push_back(p.detection < 0 ? -1 : first_rows[k] + p.detection);
-        made.error.push_back(error_of(made, p, *pings[k], processor.scenario()));
-        p.ping = pings[k]->array.ping;
-      }
-      run.tracks.push_back(std::move(made));
-    }
+    run.tracks.push_back(std::move(made));
   }
 }
 

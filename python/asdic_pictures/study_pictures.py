@@ -11,7 +11,7 @@ from .study_data import Column, Study, SummaryTable, spoken
 
 MOST_PANELS = 12
 MOST_BESIDE = 6  # inputs of two maps side by side
-YES_OR_NO = ("detected", "false_alarm", "initiated", "rare_event")
+YES_OR_NO = ("detected", "false_alarm", "initiated", "tracked", "rare_event")
 CELL_WORDS = {"pfa": "false-alarm rate", "k_shape": "shape of the K distribution (high: Rayleigh)"}
 RARE = "p_event"  # drawn from a proposal or not: by its logarithm
 WORTH = 10.0  # effective rows of an event that say something of its least probability

@@ -43,7 +43,7 @@ struct MeasuredPing {
   const PingRecord* record = nullptr;         ///< null: columns alone are wanted
   ReceiverAnswers receiver = {};              ///< [targets], if the plan uses it
   std::vector<ExpectedAnswer> expected = {};  ///< [targets], if the plan's background is expected
-  std::vector<RunPing> run = {};              ///< [pings of the plan's run], if it has one
+  PingRun run = {};                           ///< if the plan has one
 
   [[nodiscard]] explicit operator bool() const noexcept { return record != nullptr; }
   /// Of one target. There is a record.

@@ -126,17 +126,17 @@ MeasurePlan detection_alone(const MeasurePlan& plan, int ping) {
 
 /// \param record, expected  of the plan's own ping, and what draws expect there
 /// \param receiver  of that ping   \throws InputError
-std::vector<RunPing> run_of(const PingSimulator& simulator, const MeasurePlan& plan,
-                            const PingRecord& record, const std::vector<ExpectedAnswer>& expected,
-                            const ReceiverAnswers& receiver,
-                            const std::shared_ptr<SharedPropagation>& shared) {
+PingRun run_of(const PingSimulator& simulator, const MeasurePlan& plan, const PingRecord& record,
+               const std::vector<ExpectedAnswer>& expected, const ReceiverAnswers& receiver,
+               const std::shared_ptr<SharedPropagation>& shared) {
   const PingRunPlan& run = *plan.run;
   if (simulator.pings() < run.first + run.count - 1)
     throw InputError(
         {.where = "pings.count",
          .got = std::to_string(simulator.pings()) + " pings",
          .expected = std::to_string(run.first + run.count - 1) + " or more: measure.pings"});
-  std::vector<RunPing> made;
+  PingRun made;
+  std::vector<TrackedPing> tracked;
   const double start = simulator.transmission(run.first).time;
   for (int ping = run.first; ping < run.first + run.count; ++ping) {
     const bool own = ping == plan.ping;
@@ -152,6 +152,7 @@ std::vector<RunPing> run_of(const PingSimulator& simulator, const MeasurePlan& p
           own ? receiver : receiver_answers(simulator, heard, plan.receiver, plan.array);
       for (const ReceiverAnswer& answer : answers.targets)
         one.detected.push_back(answer.hit ? 1.0 : 0.0);
+      if (run.tracker) tracked.push_back(answers.places);
     } else {
       const std::vector<ExpectedAnswer> drawn =
           own ? expected : background_of(simulator, heard, asked, shared);
@@ -160,8 +161,9 @@ std::vector<RunPing> run_of(const PingSimulator& simulator, const MeasurePlan& p
             simulator, heard, plan.matched_filter, plan.array, static_cast<int>(t),
             plan.false_alarm_probability(), drawn.empty() ? ExpectedAnswer{} : drawn[t])));
     }
-    made.push_back(std::move(one));
+    made.pings.push_back(std::move(one));
   }
+  if (run.tracker) made.tracks = tracked_run(tracked, simulator.scenario(), *run.tracker);
   return made;
 }
 
@@ -203,7 +205,7 @@ Measured measure(const Study& study, const PingSimulator& simulator,
   ReceiverAnswers receiver;
   if (plan.uses_receiver())
     receiver = receiver_answers(simulator, made.record, plan.receiver, plan.array);
-  std::vector<RunPing> run;
+  PingRun run;
   if (plan.run) run = run_of(simulator, plan, made.record, expected, receiver, shared);
   Collector collector(made.values);
   walk(measures,

@@ -65,11 +65,11 @@ ReceiverAnswers receiver_answers(const PingSimulator& simulator, const PingRecor
   const std::vector<TrueEcho> echoes = true_echoes(record, array);
   const double end =
       recording.start + static_cast<double>(recording.samples) / recording.sample_rate;
-  const PingScore score = score_detections(
-      processed.result.detections, echoes,
-      true_targets(scenario, record.ping, record.start_time, echoes), processed.shape,
-      processed.places.array, processor.resolution(processed), *chosen.detector.first_time,
-      std::min(chosen.detector.last_time.value_or(end), end));
+  PingScore score = score_detections(processed.result.detections, echoes,
+                                     true_targets(scenario, record.ping, record.start_time, echoes),
+                                     processed.shape, processed.places.array,
+                                     processor.resolution(processed), *chosen.detector.first_time,
+                                     std::min(chosen.detector.last_time.value_or(end), end));
   ReceiverAnswers answers{.false_alarms = score.false_alarms};
   for (const TargetScore& target : score.targets) {
     ReceiverAnswer answer{.hit = target.hit,
@@ -88,6 +88,7 @@ ReceiverAnswers receiver_answers(const PingSimulator& simulator, const PingRecor
     }
     answers.targets.push_back(answer);
   }
+  answers.places = tracked_ping(processor, processed, record.start_time, std::move(score.owner));
   return answers;
 }
 

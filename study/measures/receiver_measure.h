@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "processing/owned_tracks.h"
 #include "sonar/ping/ping.h"
 #include "study/plan/measure_plan.h"
 
@@ -19,6 +20,7 @@ struct ReceiverAnswer {
 struct ReceiverAnswers {
   std::vector<ReceiverAnswer> targets;
   int false_alarms = 0;  ///< detections that are nobody's
+  TrackedPing places{};  ///< of all detections, for a tracker
 };
 
 /// `asdic process` for one ping of one array, in memory: band, beams, matched filters, detections,

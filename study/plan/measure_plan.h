@@ -53,6 +53,7 @@ struct PingRunPlan {
   int count = 2;             ///< of them
   int hits = 0, within = 0;  ///< a track begins after so many hits within so many pings in a row;
                              ///< 0: nobody asks
+  std::optional<TrackerSettings> tracker{};  ///< of the receiver's detections, if it is asked
   [[nodiscard]] bool initiates() const noexcept { return within > 0; }
 };
 

@@ -56,8 +56,24 @@ DetectionPlan read_detection(TomlTable& measures) {
   return plan;
 }
 
+/// `true`, or a table of the tracker's settings.
+TrackerSettings read_tracker(TomlTable& run, const DetectionPlan& detection, int pings) {
+  TrackerSettings settings;
+  if (detection.by != DetectionPlan::By::receiver)
+    throw run.fault("tracker",
+                    "a detection by = \"receiver\" with it, of whose places tracks are made");
+  if (run.is_table("tracker")) {
+    KnownSettings known;
+    read_settings(run.table("tracker"), settings, known);
+  }
+  if (settings.start_hits > pings)
+    throw run.fault("tracker", "a track_start of no more hits than the run's " +
+                                   std::to_string(pings) + " pings: none can begin");
+  return settings;
+}
+
 /// `true`, all pings of the scenario, or a table. \param pings  that the scenario has
-PingRunPlan read_run(TomlTable& measures, int pings) {
+PingRunPlan read_run(TomlTable& measures, const DetectionPlan& detection, int pings) {
   PingRunPlan plan{.count = pings};
   if (pings < 2)
     throw measures.fault("pings",
@@ -81,6 +97,7 @@ PingRunPlan read_run(TomlTable& measures, int pings) {
     plan.hits = static_cast<int>(rule[0]);
     plan.within = static_cast<int>(rule[1]);
   }
+  if (read_wanted(table, "tracker")) plan.tracker = read_tracker(table, detection, plan.count);
   table.finish();
   return plan;
 }
@@ -161,7 +178,7 @@ MeasurePlan read_measure(TomlTable table, const Scenario& scenario) {
   if (read_wanted(table, "pings")) {
     if (!plan.detection)
       throw table.fault("pings", "a detection with them, which is looked for in each");
-    plan.run = read_run(table, static_cast<int>(pings));
+    plan.run = read_run(table, *plan.detection, static_cast<int>(pings));
   }
   plan.series_every = read_series(table);
   const auto phones =

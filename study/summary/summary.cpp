@@ -102,7 +102,7 @@ bool is_proportion(const Column& column) noexcept {
     return column.name == name || column.name.starts_with(std::string(name) + '_');
   };
   return column.role == Column::Role::measure &&
-         (is("detected") || is("false_alarm") || is("initiated") ||
+         (is("detected") || is("false_alarm") || is("initiated") || is("tracked") ||
           column.name == rare_event_column);
 }
 
@@ -112,10 +112,11 @@ std::string proportion_name(const Column& column) {
   struct Word {
     std::string_view of_column, of_tables;
   };
-  for (const Word& word : {Word{"detected", "pd"}, Word{"false_alarm", "pfa"}})
+  for (const Word& word : {Word{"detected", "pd"}, Word{"false_alarm", "pfa"},
+                           Word{"initiated", "ptrack"}, Word{"tracked", "ptracked"}})
     if (column.name.starts_with(word.of_column))
       return std::string(word.of_tables) + column.name.substr(word.of_column.size());
-  return "ptrack" + column.name.substr(std::string_view("initiated").size());
+  return column.name;
 }
 
 std::optional<std::size_t> first_question(std::span<const Column> columns) noexcept {

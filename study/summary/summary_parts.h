@@ -14,8 +14,8 @@ class Cells;
 
 /// A measure that is 0 or 1, whose mean is a probability.
 [[nodiscard]] bool is_proportion(const Column& column) noexcept;
-/// "pd" of "detected", "pfa" of "false_alarm", "ptrack" of "initiated", with a target's suffix;
-/// "p_loud" of one's own "loud".
+/// "pd" of "detected", "pfa" of "false_alarm", "ptrack" of "initiated", "ptracked" of "tracked",
+/// with a target's suffix; "p_loud" of one's own "loud".
 [[nodiscard]] std::string proportion_name(const Column& column);
 /// The column that the study is about: the first proportion, else the first measure. None: no
 /// measures.

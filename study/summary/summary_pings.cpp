@@ -32,6 +32,7 @@ class Run {
       range_.push_back(column_of(table, head + "_range" + suffix));
       time_.push_back(column_of(table, head + "_time"));
     }
+    if (run_.tracker) track_ping_ = column_of(table, "track_ping" + suffix);
   }
 
   /// Of the rows of which all is known up to a ping. \param yes  of what happened so far
@@ -50,6 +51,15 @@ class Run {
   /// Of the rows in which this ping is known.
   [[nodiscard]] Share share_in(std::size_t ping) const {
     return share_of(mean_of(detected_[ping]));
+  }
+  /// Of the valid rows: the tracker has the target with this ping or before.
+  [[nodiscard]] Share tracked_until(std::size_t ping) const {
+    ClusteredMean mean(clusters_);
+    const double last = static_cast<double>(run_.first) + static_cast<double>(ping);
+    for (std::size_t row = 0; row < table_.index.size(); ++row)
+      if (table_.valid[row] != 0)
+        mean.add(table_.index[row], table_.values[track_ping_][row] <= last ? 1.0 : 0.0);
+    return share_of(mean);
   }
   [[nodiscard]] double mean_range(std::size_t ping) const { return mean_of(range_[ping]).mean(); }
   [[nodiscard]] double mean_time(std::size_t ping) const { return mean_of(time_[ping]).mean(); }
@@ -74,6 +84,7 @@ class Run {
   Clusters clusters_;
   const Table& table_;
   std::vector<std::size_t> detected_, range_, time_;  // [pings] columns
+  std::size_t track_ping_ = 0;                        // column, with a tracker
 };
 
 const Column share{.unit = "1"};
@@ -109,6 +120,9 @@ SummaryTable by_ping(const Study& study, const Run& run, const std::string& suff
     add_share(made, "ptrack",
               std::to_string(rule.hits) + " detections within " + std::to_string(rule.within) +
                   " pings in a row, so far: share of the realisations");
+  if (rule.tracker)
+    add_share(made, "ptracked",
+              "the tracker believes a track of the target, so far: share of the realisations");
   double missed = 1.0;
   for (std::size_t k = 0; k < run.pings(); ++k) {
     const Share here = run.share_in(k);
@@ -124,9 +138,12 @@ SummaryTable by_ping(const Study& study, const Run& run, const std::string& suff
     if (by_filter)
       put(made, {-std::expm1(static_cast<double>(k + 1) *
                              std::log1p(-study.measure.false_alarm_probability()))});
-    if (!rule.initiates()) continue;
-    const Share track = run.share_until(k, [](const RunAnswer& a) { return a.initiated >= 0; });
-    put(made, {track.value, track.interval.low, track.interval.high});
+    const auto put_share = [&](const Share& one) {
+      put(made, {one.value, one.interval.low, one.interval.high});
+    };
+    if (rule.initiates())
+      put_share(run.share_until(k, [](const RunAnswer& a) { return a.initiated >= 0; }));
+    if (rule.tracker) put_share(run.tracked_until(k));
   }
   return made;
 }

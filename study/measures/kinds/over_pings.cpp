@@ -13,12 +13,12 @@ std::string of_ping_number(int ping, std::string_view what) {
 void OverPings::of_target(const MeasuredPing& ping, std::size_t target, Collector& to) {
   const PingRunPlan& plan = *ping.plan.run;
   std::vector<double> detected;
-  for (const RunPing& one : ping.run) detected.push_back(one.detected[target]);
+  for (const RunPing& one : ping.run.pings) detected.push_back(one.detected[target]);
   RunAnswer answer;
   if (ping) answer = run_answer(detected, plan);
   const auto yes = [&](int at) { return answer.known ? (at < 0 ? 0.0 : 1.0) : no_value; };
   const auto of = [&](int at, auto value) {
-    return at < 0 ? no_value : value(ping.run[static_cast<std::size_t>(at)]);
+    return at < 0 ? no_value : value(ping.run.pings[static_cast<std::size_t>(at)]);
   };
   const auto number = [](const RunPing& one) { return static_cast<double>(one.ping); };
   const auto time = [](const RunPing& one) { return one.time; };
@@ -45,9 +45,20 @@ void OverPings::of_target(const MeasuredPing& ping, std::size_t target, Collecto
     to.add("initiation_time", "s", "when that ping is sent, after the run's first; NaN: none",
            of(answer.initiated, time));
   }
+  if (plan.tracker) {
+    const TargetTrack track =
+        ping ? ping.run.tracks.targets[target] : TargetTrack{.error = no_value};
+    to.add("tracked", "1", "the tracker believes a track of which most detections are the target's",
+           track.believed < 0 ? 0.0 : 1.0);
+    to.add("track_ping", "1", "number of the ping with which it is believed; NaN: none",
+           of(track.believed, number));
+    to.add("track_time", "s", "when that ping is sent, after the run's first; NaN: none",
+           of(track.believed, time));
+    to.add("track_error", "m", "horizontal, of the track's last place; NaN: none", track.error);
+  }
   for (int k = 0; k < plan.count; ++k) {
     const auto value = [&](auto what) {
-      return ping ? what(ping.run[static_cast<std::size_t>(k)]) : no_value;
+      return ping ? what(ping.run.pings[static_cast<std::size_t>(k)]) : no_value;
     };
     to.add(of_ping_number(plan.first + k, "detected"), "1", "detected in this ping; NaN: not known",
            value([&](const RunPing& one) { return one.detected[target]; }), Column::Role::ping);
@@ -59,9 +70,12 @@ void OverPings::of_target(const MeasuredPing& ping, std::size_t target, Collecto
 
 void OverPings::of_ping(const MeasuredPing& ping, Collector& to) {
   const PingRunPlan& plan = *ping.plan.run;
+  if (plan.tracker)
+    to.add("false_tracks", "1", "that the tracker believes, of detections that are nobody's",
+           ping.run.tracks.false_tracks);
   for (int k = 0; k < plan.count; ++k)
     to.add(of_ping_number(plan.first + k, "time"), "s", "when it is sent, after the run's first",
-           ping ? ping.run[static_cast<std::size_t>(k)].time : no_value, Column::Role::ping);
+           ping ? ping.run.pings[static_cast<std::size_t>(k)].time : no_value, Column::Role::ping);
 }
 
 }  // namespace asdic::detail::study
