@@ -11,24 +11,14 @@
 #include "study/summary/k_shape.h"
 #include "study/summary/summary_parts.h"
 #include "study/summary/tail.h"
+#include "support/gamma_draw.h"
 
 namespace asdic::detail::study {
 namespace {
 
-constexpr double no_end = std::numeric_limits<double>::infinity();
+using support::gamma_draw;
 
-/// A gamma variable of unit mean (Marsaglia & Tsang, ACM TOMS 26, 363, 2000).
-double gamma_draw(double shape, RandomStream& random) {
-  if (shape < 1.0)
-    return gamma_draw(shape + 1.0, random) * (shape + 1.0) / shape *
-           std::pow(random.uniform(), 1.0 / shape);
-  const double d = shape - 1.0 / 3.0, c = 1.0 / std::sqrt(9.0 * d);
-  while (true) {
-    const double x = random.normal(), v = std::pow(1.0 + c * x, 3.0);
-    if (v > 0.0 && std::log(random.uniform()) < 0.5 * x * x + d - d * v + d * std::log(v))
-      return d * v / shape;
-  }
-}
+constexpr double no_end = std::numeric_limits<double>::infinity();
 
 /// Power of a cell of K-distributed amplitude: an exponential of a gamma mean; ∞: Rayleigh.
 double k_draw(double shape, RandomStream& random) {

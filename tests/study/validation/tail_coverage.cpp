@@ -11,6 +11,7 @@
 #include "study/summary/k_shape.h"
 #include "study/summary/tail.h"
 #include "support/deep.h"
+#include "support/gamma_draw.h"
 
 // How often intervals of 95 % hold the truth, by counting over many sets of cells: the shape of the
 // K distribution, and the rate at 10⁻⁶ by the fitted tail, a hundredth of what a set can count.
@@ -19,20 +20,9 @@
 namespace asdic::detail::study {
 namespace {
 
-constexpr double no_end = std::numeric_limits<double>::infinity();
+using support::gamma_draw;
 
-/// A gamma variable of unit mean (Marsaglia & Tsang, ACM TOMS 26, 363, 2000).
-double gamma_draw(double shape, RandomStream& random) {
-  if (shape < 1.0)
-    return gamma_draw(shape + 1.0, random) * (shape + 1.0) / shape *
-           std::pow(random.uniform(), 1.0 / shape);
-  const double d = shape - 1.0 / 3.0, c = 1.0 / std::sqrt(9.0 * d);
-  while (true) {
-    const double x = random.normal(), v = std::pow(1.0 + c * x, 3.0);
-    if (v > 0.0 && std::log(random.uniform()) < 0.5 * x * x + d - d * v + d * std::log(v))
-      return d * v / shape;
-  }
-}
+constexpr double no_end = std::numeric_limits<double>::infinity();
 
 /// Cells of one set by level, over a known mean or over that of 24 around.
 std::vector<double> counts_of(double shape, int cells, bool around, std::uint64_t seed) {
