@@ -1,41 +1,17 @@
 #include <gtest/gtest.h>
-#include <tbb/parallel_for.h>
 
 #include <cmath>
 
 #include "core/units.h"
 #include "study/reader/study_reader.h"
 #include "study/summary/summary.h"
+#include "support/realised.h"
+#include "support/summary_tables.h"
 
 namespace asdic::detail::study {
 namespace {
 
-Table rows_of(const Study& study) {
-  const Realiser realiser(study);
-  std::vector<Row> rows(study.realisations);
-  tbb::parallel_for(std::size_t{0}, rows.size(),
-                    [&](std::size_t i) { rows[i] = realiser.realise(i); });
-  Table table{.columns = columns(study)};
-  table.values.resize(table.columns.size());
-  for (const Row& row : rows) {
-    table.index.push_back(row.index);
-    table.valid.push_back(row.valid);
-    for (std::size_t c = 0; c < row.values.size(); ++c) table.values[c].push_back(row.values[c]);
-  }
-  return table;
-}
-
-const SummaryTable& named(const std::vector<SummaryTable>& tables, const std::string& name) {
-  for (const SummaryTable& table : tables)
-    if (table.name == name) return table;
-  throw std::runtime_error("no table " + name);
-}
-
-double value(const SummaryTable& table, const std::string& column, std::size_t row) {
-  for (std::size_t c = 0; c < table.columns.size(); ++c)
-    if (table.columns[c].name == column) return table.values[c].at(row);
-  throw std::runtime_error("no column " + column);
-}
+using support::realised;
 
 /// Pd = Pfa^(1/(1 + SNR)), SNR = RL + 10 lg E − NL with E = 3/8·0.25 s of the Hann window.
 /// docs/theory/studies.md, eq. (4)
@@ -57,28 +33,28 @@ const std::filesystem::path file =
 
 TEST(KnownAnswer, PdOfASwerling1TargetInWhiteNoise) {
   const Study study = read_study(file, std::vector<std::string>{"study.realisations=4000"});
-  const std::vector<SummaryTable> summary = summarise(study, rows_of(study));
+  const std::vector<SummaryTable> summary = summarise(study, realised(study));
   // Over all ranges, within the study's own 99 % interval.
   const SummaryTable& all = named(summary, "convergence");
   const std::size_t last = all.values[0].size() - 1;
   const double truth = closed_form(20e3, 40e3);
-  EXPECT_LT(value(all, "pd_low", last), truth);
-  EXPECT_GT(value(all, "pd_high", last), truth);
+  EXPECT_LT(column(all, "pd_low").at(last), truth);
+  EXPECT_GT(column(all, "pd_high").at(last), truth);
   // And in every bin of range.
   const SummaryTable& by_range = named(summary, "pd_by_range");
   ASSERT_EQ(by_range.values[0].size(), 5U);
   for (std::size_t i = 0; i < 5; ++i) {
     const double pd =
-        closed_form(value(by_range, "range_low", i), value(by_range, "range_high", i));
-    EXPECT_LT(value(by_range, "pd_low", i), pd) << i;
-    EXPECT_GT(value(by_range, "pd_high", i), pd) << i;
+        closed_form(column(by_range, "range_low").at(i), column(by_range, "range_high").at(i));
+    EXPECT_LT(column(by_range, "pd_low").at(i), pd) << i;
+    EXPECT_GT(column(by_range, "pd_high").at(i), pd) << i;
   }
   // False alarms: 1500 chances of 1e-4; more than 5 have a probability of 1e-8.
   const SummaryTable& statistics = named(summary, "statistics");
   for (std::size_t i = 0; i < statistics.values[0].size(); ++i) {
     const bool alarms = statistics.columns[0].labels[i] == "false_alarm";
     if (alarms) {
-      EXPECT_LE(value(statistics, "mean", i) * 1500.0, 5.0);
+      EXPECT_LE(column(statistics, "mean").at(i) * 1500.0, 5.0);
     }
   }
 }
@@ -87,13 +63,13 @@ TEST(KnownAnswer, ATargetThatDoesNotFluctuateIsAnother) {
   // The wrong model must fail: four degrees of freedom instead of two.
   const Study study = read_study(
       file, std::vector<std::string>{"target.0.fluctuation=swerling-3", "study.realisations=4000"});
-  const std::vector<SummaryTable> summary = summarise(study, rows_of(study));
+  const std::vector<SummaryTable> summary = summarise(study, realised(study));
   const SummaryTable& by_range = named(summary, "pd_by_range");
   int outside = 0;
   for (std::size_t i = 0; i < 5; ++i) {
     const double pd =
-        closed_form(value(by_range, "range_low", i), value(by_range, "range_high", i));
-    outside += !(value(by_range, "pd_low", i) < pd && pd < value(by_range, "pd_high", i));
+        closed_form(column(by_range, "range_low").at(i), column(by_range, "range_high").at(i));
+    outside += !(column(by_range, "pd_low").at(i) < pd && pd < column(by_range, "pd_high").at(i));
   }
   EXPECT_GE(outside, 2);
 }
@@ -141,8 +117,8 @@ TEST(KnownAnswer, WidePulsesLoseTheEstimatesLossAlone) {
   constexpr int n = 400;
   const double loss = closed_form(20e3, 40e3) - with_estimated_background(20e3, 40e3);
   for (const double product : {1.0, 20.0, 50.0}) {
-    const Table around = rows_of(with_lfm(product, "around", n));
-    const Table known = rows_of(with_lfm(product, "noise", n));
+    const Table around = realised(with_lfm(product, "around", n));
+    const Table known = realised(with_lfm(product, "noise", n));
     const double pd = mean_of(around, "detected"), best = mean_of(known, "detected");
     EXPECT_NEAR(best - pd, loss, 4.9 * std::sqrt(0.2 / n) + 0.002) << product;
     // One share against its closed form: √(p(1 − p)/n) ≤ 0.025.

@@ -1,11 +1,11 @@
 #include <gtest/gtest.h>
-#include <tbb/parallel_for.h>
 
 #include <cmath>
 
 #include "core/units.h"
 #include "study/reader/study_reader.h"
 #include "study/summary/summary.h"
+#include "support/realised.h"
 #include "support/summary_tables.h"
 
 // A run of pings of the known answer: a Swerling target in white noise, whose probabilities over
@@ -38,18 +38,7 @@ Study crossing(int scan_pings, int rows) {
 }
 
 SummaryTable pings_of(const Study& study) {
-  const Realiser realiser(study);
-  std::vector<Row> rows(study.realisations);
-  tbb::parallel_for(std::size_t{0}, rows.size(),
-                    [&](std::size_t i) { rows[i] = realiser.realise(i); });
-  Table table{.columns = columns(study)};
-  table.values.resize(table.columns.size());
-  for (const Row& row : rows) {
-    table.index.push_back(row.index);
-    table.valid.push_back(row.valid);
-    for (std::size_t c = 0; c < row.values.size(); ++c) table.values[c].push_back(row.values[c]);
-  }
-  for (SummaryTable& one : summarise(study, table))
+  for (SummaryTable& one : summarise(study, support::realised(study)))
     if (one.name == "pings") return std::move(one);
   throw std::runtime_error("no table pings");
 }
