@@ -8,6 +8,7 @@
 #include "study/sampling/design.h"
 #include "study/sampling/law.h"
 #include "study/summary/intervals.h"
+#include "support/summary_tables.h"
 
 namespace asdic::detail::study {
 namespace {
@@ -87,18 +88,6 @@ Table made_up(std::size_t n) {
       table.values[c].push_back(table.valid[i] != 0 || c < 3 ? row[c] : std::nan(""));
   }
   return table;
-}
-
-const SummaryTable& named(const std::vector<SummaryTable>& tables, const std::string& name) {
-  for (const SummaryTable& table : tables)
-    if (table.name == name) return table;
-  throw std::runtime_error("no table " + name);
-}
-
-const std::vector<double>& column(const SummaryTable& table, const std::string& name) {
-  for (std::size_t c = 0; c < table.columns.size(); ++c)
-    if (table.columns[c].name == name) return table.values[c];
-  throw std::runtime_error("no column " + name);
 }
 
 Study asking(std::vector<std::vector<SummaryAxis>> by) {
