@@ -113,7 +113,14 @@ Existing look_at(const std::filesystem::path& output, const Work& work, IndexRan
                    file.fingerprint().identity + ")");
     const IndexRange there = file.range();
     const bool whole = file.complete() && file.stopped_by().empty();
-    if (there.first < range.first || there.end > range.end || (until && whole))
+    if (until && whole)
+      throw InputError(
+          {.where = output.string(),
+           .got = "the whole study, realisations " + index_text(there) +
+                  ", which answers more than --until asks for",
+           .expected = "a file that may end earlier: leave --until (or study.until) out to keep "
+                       "this one, name another output, or --fresh to write over it"});
+    if (there.first < range.first || there.end > range.end)
       throw InputError({.where = output.string(),
                         .got = "realisations " + index_text(there) + " of this study",
                         .expected = "none beyond the " + index_text(range) +

@@ -27,7 +27,7 @@ class GoOn : public testing::Test {
   }
 
   /// What `asdic study` would say; "written" if nothing.
-  std::string said(const std::string& text, bool assemble = false) {
+  std::string said(const std::string& text, bool assemble = false, const Until& until = {}) {
     const Study study = read_study(folder.write("study.toml", text));
     const Realiser realiser(study);
     made = 0;
@@ -36,9 +36,10 @@ class GoOn : public testing::Test {
       return realiser.realise(index);
     });
     try {
-      const StudyOutcome outcome = run_study(
-          work,
-          {.output = folder / "s.h5", .range = {0, study.realisations}, .assemble_only = assemble});
+      const StudyOutcome outcome = run_study(work, {.output = folder / "s.h5",
+                                                    .range = {0, study.realisations},
+                                                    .until = until,
+                                                    .assemble_only = assemble});
       before = outcome.before;
       skipped = outcome.skipped;
       return outcome.written ? "written" : "not written";
@@ -56,6 +57,19 @@ class GoOn : public testing::Test {
 };
 
 #define EXPECT_SAYS(text, words) EXPECT_NE((text).find(words), std::string::npos) << (text)
+
+// A file that is whole has more rows than --until would leave of it.
+TEST_F(GoOn, AWholeStudyIsNotEndedEarlier) {
+  const std::string text = study("stop", 60.0);
+  EXPECT_EQ(said(text), "written");
+  EXPECT_EQ(said(text, false, Until(0.5)),
+            (folder / "s.h5").string() +
+                ": found the whole study, realisations 0:6, which answers more than --until asks "
+                "for, expected a file that may end earlier: leave --until (or study.until) out to "
+                "keep this one, name another output, or --fresh to write over it");
+  EXPECT_EQ(made, 0);
+  EXPECT_EQ(said(text), "written");
+}
 
 TEST_F(GoOn, AnUnchangedStudyFailsInTheSameWords) {
   const std::string first = said(study("stop", 2000.0));
