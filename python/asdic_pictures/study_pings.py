@@ -34,6 +34,7 @@ def draw_one(study: Study, table: SummaryTable):
     axes[0].set_ylim(-0.02, 1.02)
     axes[0].set_ylabel("probability of detection")
     axes[0].set_xlabel("ping")
+    axes[0].xaxis.set_major_locator(style.ticker.MaxNLocator(8, integer=True, steps=[1, 2, 5, 10], min_n_ticks=1))
     style.legend_below(axes[0], ncol=2)
     at = table["ping"].values
     axes[1].bar(at, table["first"].values, width=0.75, color=style.BLUE)
