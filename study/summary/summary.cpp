@@ -45,15 +45,6 @@ std::string twice(const std::vector<Column>& columns) {
   return "";
 }
 
-/// The least value with a share p of the weights at or below it. \param sorted  values and weights
-double weighted_quantile(std::span<const std::pair<double, double>> sorted, double p) {
-  double sum = 0.0, before = 0.0;
-  for (const auto& [value, weight] : sorted) sum += weight;
-  for (const auto& [value, weight] : sorted)
-    if ((before += weight) >= p * sum) return value;
-  return sorted.back().first;
-}
-
 /// Where an entry of `by` stands: "study.toml:12: summary.by[1]".
 std::string place_of(const Study& study, std::size_t entry) {
   const TomlValue* summary = study.document.find("summary");

@@ -5,7 +5,6 @@
 #include "study/summary/axis.h"
 #include "study/summary/intervals.h"
 #include "study/summary/summary_parts.h"
-#include "study/summary/weighted_mean.h"
 
 namespace asdic::detail::study {
 namespace {
@@ -24,7 +23,6 @@ std::optional<std::size_t> alarms_of(const Study& study, const Table& table,
 std::vector<SummaryTable> tables_by(const Study& study, const std::vector<SummaryAxis>& asked,
                                     const Table& table) {
   const SummaryPlan& plan = study.summary;
-  const Clusters clusters = clusters_of(study);
   std::vector<AxisBins> axes;
   std::string suffix, along;
   for (const SummaryAxis& axis : asked) {
@@ -34,14 +32,10 @@ std::vector<SummaryTable> tables_by(const Study& study, const std::vector<Summar
     along += (axes.size() > 1 ? " and " : " against ") + axis.column;
   }
   const Cells cells(std::move(axes), table);
-  const std::vector<double> weights = weights_of(table);
-  const bool weighted = !weights.empty();
+  const RowMeans means(study, table);
+  const bool weighted = means.weighted();
   const auto mean_of = [&](std::size_t cell, std::size_t column) {
-    RowMean mean(clusters, weighted);
-    for (const std::size_t row : cells.rows(cell))
-      if (counts(table, row, column))
-        mean.add(table.index[row], table.values[column][row], weighted ? weights[row] : 1.0);
-    return mean;
+    return means.in_cell(cells.rows(cell), column);
   };
 
   std::vector<SummaryTable> all = ellipse_tables(study, cells, suffix, along, table);
@@ -68,13 +62,7 @@ std::vector<SummaryTable> tables_by(const Study& study, const std::vector<Summar
       add_column(made, probability, "pfa_high", "confidence interval (Clopper & Pearson)");
       add_column(made, probability, "pfa_set", "false-alarm probability that is set");
     }
-    if (weighted) {
-      add_column(made, probability, "effective",
-                 "(sum of weights)^2 over sum of their squares, of the rows in which the rarer "
-                 "outcome happened");
-      add_column(made, probability, "largest_share",
-                 "of the rarer outcome's probability that one row alone has");
-    }
+    if (weighted) add_worth(made);
     for (std::size_t cell = 0; cell < cells.size(); ++cell) {
       double hits = 0.0;
       for (const std::size_t row : cells.rows(cell))
@@ -100,8 +88,7 @@ std::vector<SummaryTable> tables_by(const Study& study, const std::vector<Summar
         put(made,
             {known, rang / known, found.low, found.high, study.measure.false_alarm_probability()});
       }
-      if (weighted)
-        put(made, {share.weighted().effective_of_event(), share.weighted().largest_share()});
+      if (weighted) put_worth(made, share);
     }
     all.push_back(std::move(made));
     table.values[c].rest();

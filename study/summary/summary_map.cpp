@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "core/text.h"
 #include "core/units.h"
@@ -86,19 +87,39 @@ SummaryAxis in_bins(SummaryAxis axis) {
   return axis;
 }
 
-/// Straight between the order statistics, of values that may be −∞.
-double quantile_of(const std::vector<double>& sorted, double p) {
-  if (sorted.empty()) return no_value;
-  const double x = sample_quantile(sorted, p);
-  if (std::isfinite(x)) return x;
-  const auto below = static_cast<std::size_t>(p * static_cast<double>(sorted.size() - 1));
-  return sorted[below];
-}
+/// Quantiles of values that may be −∞: straight between the order statistics, or by their weights.
+class Quantiles {
+ public:
+  explicit Quantiles(bool weighted) : weighted_(weighted) {}
+  void add(double x, double weight) {
+    if (weighted_)
+      with_weights_.emplace_back(x, weight);
+    else
+      values_.push_back(x);
+  }
+  void sort() {
+    std::sort(values_.begin(), values_.end());
+    std::sort(with_weights_.begin(), with_weights_.end());
+  }
+  /// Once they are sorted; NaN of none.
+  [[nodiscard]] double at(double p) const {
+    if (weighted_) return weighted_quantile(with_weights_, p);
+    if (values_.empty()) return no_value;
+    const double x = sample_quantile(values_, p);
+    if (std::isfinite(x)) return x;
+    return values_[static_cast<std::size_t>(p * static_cast<double>(values_.size() - 1))];
+  }
+
+ private:
+  bool weighted_;
+  std::vector<double> values_;
+  std::vector<std::pair<double, double>> with_weights_;
+};
 
 class Map {
  public:
   Map(const Study& study, const Table& table)
-      : study_(study), table_(table), clusters_(clusters_of(study)) {}
+      : study_(study), table_(table), row_means_(study, table) {}
 
   [[nodiscard]] std::vector<SummaryTable> tables() const {
     const SummaryMap& map = *study_.summary.map;
@@ -143,19 +164,23 @@ class Map {
     add_column(made, share, name, column.meaning + ": share of the realisations");
     add_column(made, share, name + "_low", "confidence interval");
     add_column(made, share, name + "_high", "confidence interval");
+    if (row_means_.weighted()) add_worth(made);
     for (std::size_t cell = 0; cell < cells.size(); ++cell) {
       double hits = 0.0;
-      ClusteredMean mean(clusters_);
       for (const std::size_t row : cells.rows(cell))
-        if (counts(table_, row, c)) {
-          mean.add(table_.index[row], table_.values[c][row]);
-          hits += table_.values[c][row];
-        }
+        if (counts(table_, row, c)) hits += table_.values[c][row];
+      const RowMean mean = row_means_.in_cell(cells.rows(cell), c);
       cells.start_row(made, cell, mean.count());
-      const Interval interval = mean.proportion(study_.summary.interval, study_.summary.confidence);
-      put(made, {hits, hits / mean.count(), interval.low, interval.high});
+      const Interval interval = interval_of(mean, true);
+      put(made, {hits, row_means_.weighted() ? mean.value(true) : hits / mean.count(), interval.low,
+                 interval.high});
+      if (row_means_.weighted()) put_worth(made, mean);
     }
     return made;
+  }
+
+  [[nodiscard]] Interval interval_of(const RowMean& mean, bool proportion) const {
+    return mean.interval(proportion, study_.summary.interval, study_.summary.confidence);
   }
 
   /// Means are of finite values, quantiles of all that is known, −∞ too.
@@ -178,18 +203,17 @@ class Map {
                                        [&](std::size_t row) { return table_.valid[row] != 0; });
       cells.start_row(made, cell, static_cast<double>(valid));
       for (const std::size_t c : columns) {
-        ClusteredMean mean(clusters_);
-        std::vector<double> known;
+        const RowMean mean = row_means_.in_cell(cells.rows(cell), c);
+        Quantiles known(row_means_.weighted());
         for (const std::size_t row : cells.rows(cell)) {
           const double x = table_.values[c][row];
-          if (counts(table_, row, c)) mean.add(table_.index[row], x);
-          if (table_.valid[row] != 0 && !std::isnan(x)) known.push_back(x);
+          if (table_.valid[row] != 0 && !std::isnan(x)) known.add(x, row_means_.weight(row));
         }
-        std::sort(known.begin(), known.end());
-        const Interval interval = mean.mean_interval(study_.summary.confidence);
-        put(made, {mean.count() > 0.0 ? mean.mean() : no_value, interval.low, interval.high,
+        known.sort();
+        const Interval interval = interval_of(mean, false);
+        put(made, {mean.count() > 0.0 ? mean.value(false) : no_value, interval.low, interval.high,
                    mean.count()});
-        for (const double p : quantiles) put(made, {quantile_of(known, p)});
+        for (const double p : quantiles) put(made, {known.at(p)});
       }
     }
     return made;
@@ -197,7 +221,7 @@ class Map {
 
   const Study& study_;
   const Table& table_;
-  Clusters clusters_;
+  RowMeans row_means_;
 };
 
 }  // namespace

@@ -1,10 +1,12 @@
 #pragma once
+#include <cmath>
 #include <limits>
 #include <span>
 #include <string_view>
 #include <vector>
 
 #include "study/summary/summary.h"
+#include "study/summary/weighted_mean.h"
 
 namespace asdic::detail::study {
 
@@ -37,6 +39,43 @@ void check_summary_names(const Study& study);
 [[nodiscard]] std::vector<double> weights_of(const Table& table);
 /// Whether its rows have weights.
 [[nodiscard]] bool is_weighted(const Table& table) noexcept;
+
+/// Means of a table's columns, by the rows' weights where they have some.
+class RowMeans {
+ public:
+  RowMeans(const Study& study, const Table& table);
+
+  [[nodiscard]] bool weighted() const noexcept { return !weights_.empty(); }
+  [[nodiscard]] double weight(std::size_t row) const noexcept {
+    return weighted() ? weights_[row] : 1.0;
+  }
+  /// Of rows in a cell, whose probability is not known. \param rows  increasing
+  [[nodiscard]] RowMean in_cell(std::span<const std::size_t> rows, std::size_t column) const;
+  /// Of all rows. \param value  of a row, not finite: not known
+  template <class Value>
+  [[nodiscard]] RowMean of_all(Value value) const {
+    RowMean mean(clusters_, weighted(), WeightedMean::Of::all_rows);
+    for (std::size_t row = 0; row < table_.index.size(); ++row)
+      if (const double x = value(row); std::isfinite(x))
+        mean.add(table_.index[row], x, weight(row));
+      else
+        mean.leave_out(table_.index[row], weight(row));
+    return mean;
+  }
+  /// The same of a column.
+  [[nodiscard]] RowMean of_column(std::size_t column) const;
+
+ private:
+  const Table& table_;
+  Clusters clusters_;
+  std::vector<double> weights_;  // [rows]; empty: none
+};
+
+/// What the rows of a probability are worth, behind its other columns: "effective" and
+/// "largest_share". \param head  before their names: "pd_"
+void add_worth(SummaryTable& to, const std::string& head = "");
+void put_worth(SummaryTable& to, const RowMean& mean);
+
 /// How many rows each part of the proposal has, and what they give to the first question.
 [[nodiscard]] std::vector<SummaryTable> drawn_from_table(const Study& study, const Table& table);
 /// What is to be known of a probability that weights estimate: rows of the event that are too few,

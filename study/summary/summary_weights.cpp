@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "study/plan/no_value.h"
 #include "study/summary/axis.h"
 #include "study/summary/intervals.h"
 #include "study/summary/summary_parts.h"
@@ -55,6 +56,35 @@ std::vector<FromPart> by_part(const Study& study, const Table& table,
 
 }  // namespace
 
+RowMeans::RowMeans(const Study& study, const Table& table)
+    : table_(table), clusters_(clusters_of(study)), weights_(weights_of(table)) {}
+
+RowMean RowMeans::in_cell(std::span<const std::size_t> rows, std::size_t column) const {
+  RowMean mean(clusters_, weighted());
+  for (const std::size_t row : rows)
+    if (counts(table_, row, column))
+      mean.add(table_.index[row], table_.values[column][row], weight(row));
+  return mean;
+}
+
+RowMean RowMeans::of_column(std::size_t column) const {
+  return of_all([&](std::size_t row) {
+    return counts(table_, row, column) ? table_.values[column][row] : no_value;
+  });
+}
+
+void add_worth(SummaryTable& to, const std::string& head) {
+  add_column(to, {.unit = "1"}, head + "effective",
+             "(sum of weights)^2 over sum of their squares, of the rows in which the rarer "
+             "outcome happened");
+  add_column(to, {.unit = "1"}, head + "largest_share",
+             "of the rarer outcome's probability that one row alone has");
+}
+
+void put_worth(SummaryTable& to, const RowMean& mean) {
+  put(to, {mean.weighted().effective_of_event(), mean.weighted().largest_share()});
+}
+
 std::vector<SummaryTable> drawn_from_table(const Study& study, const Table& table) {
   const std::optional<std::size_t> question = first_question(table.columns);
   if (!question || !is_proportion(table.columns[*question]) ||
@@ -82,16 +112,12 @@ std::vector<SummaryTable> drawn_from_table(const Study& study, const Table& tabl
 
 std::vector<std::string> weight_warnings(const Study& study, const Table& table) {
   const std::vector<double> weights = weights_of(table);
+  const RowMeans means(study, table);
   std::vector<std::string> all;
   if (std::string one = mean_weight_warning(weights); !one.empty()) all.push_back(std::move(one));
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     if (!is_proportion(table.columns[c])) continue;
-    WeightedMean mean(clusters_of(study), WeightedMean::Of::all_rows);
-    for (std::size_t row = 0; row < table.index.size(); ++row)
-      if (counts(table, row, c))
-        mean.add(table.index[row], table.values[c][row], weights[row]);
-      else
-        mean.leave_out(table.index[row], weights[row]);
+    const WeightedMean mean = means.of_column(c).weighted();
     if (!(mean.count() > 0.0)) continue;
     const std::string name = proportion_name(table.columns[c]);
     const std::string rows = in_digits(mean.rows_of_event());

@@ -65,6 +65,15 @@ Interval gamma_interval(double estimate, double variance, double largest, double
           up_variance / up * gamma_quantile(up * up / up_variance, 1.0 - tail)};
 }
 
+double weighted_quantile(std::span<const std::pair<double, double>> sorted, double p) {
+  double sum = 0.0, before = 0.0;
+  for (const auto& [value, weight] : sorted) sum += weight;
+  if (!(sum > 0.0)) return no_value;
+  for (const auto& [value, weight] : sorted)
+    if ((before += weight) >= p * sum) return value;
+  return sorted.back().first;
+}
+
 WeightedMean::WeightedMean(const Clusters& clusters, Of of) : clusters_(clusters), of_(of) {
   if (clusters_.kind == Clusters::Kind::replicates) replicates_.resize(clusters_.size);
 }
@@ -191,7 +200,7 @@ double WeightedMean::probability() const noexcept {
 }
 
 Interval WeightedMean::probability_interval(double confidence) const {
-  if (!(all_.known > 0.0)) return {0.0, 1.0};
+  if (!(all_.w > 0.0)) return {0.0, 1.0};
   const Event event = rarer();
   // None of as many independent rows: what is said of an event that is not reached.
   const double none = 1.0 - std::pow(0.5 * (1.0 - confidence), 1.0 / std::max(1.0, effective()));

@@ -1,5 +1,7 @@
 #pragma once
 #include <cstdint>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "study/sampling/clusters.h"
@@ -20,6 +22,10 @@ namespace asdic::detail::study {
 /// \param largest  what one more row of the largest weight would add to it
 [[nodiscard]] Interval gamma_interval(double estimate, double variance, double largest,
                                       double confidence);
+
+/// The least value with a share p of the weights at or below it; NaN where they have no weight.
+/// \param sorted  [n] values, increasing, and their weights
+[[nodiscard]] double weighted_quantile(std::span<const std::pair<double, double>> sorted, double p);
 
 /// Mean of values with weights w, the quotient of the density that is meant and that from which
 /// rows were drawn; E[w] = 1. Copyable; its memory grows with replicates only.

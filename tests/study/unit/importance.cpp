@@ -11,6 +11,7 @@
 #include "study/sampling/cross_entropy.h"
 #include "study/summary/summary_parts.h"
 #include "support/function_study.h"
+#include "support/mixture.h"
 #include "support/plain_sea.h"
 #include "support/temporary_directory.h"
 
@@ -22,30 +23,13 @@ namespace {
 using support::column_named;
 using support::Coverage;
 using support::FunctionStudy;
+using support::mixture;
+using support::normal_input;
 using support::table_named;
 
 constexpr double far = 4.753424308822899;  // P(Z > far) = 10⁻⁶
 
 double tail(double z) { return 0.5 * std::erfc(z / std::sqrt(2.0)); }
-
-Variable normal_input(const std::string& name) {
-  return {.name = name, .keys = {name}, .origin = "", .law = NumberLaw{CutLaw(Normal{0.0, 1.0})}};
-}
-
-/// Laws, a wide part and these components, as the reader makes them.
-Proposal mixture(const std::vector<std::vector<CoordinateDraw>>& components, double share = 0.1,
-                 double wide = 0.2) {
-  std::vector<ProposalPart> parts{{.name = "laws", .share = share, .guards = true}};
-  if (wide > 0.0) {
-    parts.push_back({.name = "wide", .share = wide, .guards = true});
-    parts.back().draws.assign(components.front().size(), ScoreLaw{0.0, 3.0});
-  }
-  for (const auto& component : components)
-    parts.push_back({.name = "component",
-                     .share = (1.0 - share - wide) / static_cast<double>(components.size()),
-                     .draws = component});
-  return Proposal(parts);
-}
 
 FunctionStudy detects(std::size_t inputs, const Proposal& proposal, std::uint64_t rows) {
   FunctionStudy made;

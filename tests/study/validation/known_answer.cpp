@@ -59,6 +59,32 @@ TEST(KnownAnswer, PdOfASwerling1TargetInWhiteNoise) {
   }
 }
 
+// Rows from far out for the most part, in a map: Pd of each cell by its weights. The share of the
+// rows that detect is another.
+TEST(KnownAnswer, PdOfAMapByWeights) {
+  const Study study = read_study(
+      file, std::vector<std::string>{
+                "study.realisations=2000",
+                "vary.\"target.0.range\"={law=\"uniform\", low=20e3, high=40e3, "
+                "proposal={law=\"normal\", mean=39e3, deviation=3e3}}",
+                "vary.\"target.0.bearing_deg\"={law=\"uniform\", low=0.0, high=360.0}",
+                "summary.map={cells=\"range_bearing\", range={bins=2}, bearing={bins=2}}"});
+  const std::vector<SummaryTable> summary = summarise(study, realised(study));
+  const SummaryTable& map = named(summary, "map_pd");
+  ASSERT_EQ(map.values[0].size(), 4U);
+  int outside = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double low = column(map, "pd_low")[i], high = column(map, "pd_high")[i];
+    const double pd = closed_form(column(map, "range_low")[i], column(map, "range_high")[i]);
+    EXPECT_LT(low, pd) << i;
+    EXPECT_GT(high, pd) << i;
+    EXPECT_LT(high - low, 0.3) << i;
+    const double plain = column(map, "hits")[i] / column(map, "count")[i];
+    outside += !(low < plain && plain < high);
+  }
+  EXPECT_GE(outside, 2);
+}
+
 TEST(KnownAnswer, ATargetThatDoesNotFluctuateIsAnother) {
   // The wrong model must fail: four degrees of freedom instead of two.
   const Study study = read_study(
