@@ -261,9 +261,6 @@ Study read_study(const std::filesystem::path& path, std::span<const std::string>
                              "the event is reached with fewer of them");
   study.summary =
       read_summary(own.table("summary"), study.document.find("summary"), columns(study));
-  if (is_weighted(study) && study.measure.run)
-    throw own.table("measure").fault("pings", "no runs of pings of rows that have weights",
-                                     "[rare] or a proposal beside them");
   check_summary_names(study);
   if (!study.until.empty()) {
     check_until(study, study.until_where);

@@ -15,6 +15,7 @@ namespace {
 struct Share {
   double value = 0.0, count = 0.0;
   Interval interval{};
+  RowMean mean;
 };
 
 /// The columns of one target's run.
@@ -22,10 +23,7 @@ class Run {
  public:
   /// \param suffix  of the target's columns
   Run(const Study& study, const Table& table, const std::string& suffix)
-      : plan_(study.summary),
-        run_(*study.measure.run),
-        clusters_(clusters_of(study)),
-        table_(table) {
+      : plan_(study.summary), run_(*study.measure.run), means_(study, table), table_(table) {
     for (int k = 0; k < run_.count; ++k) {
       const std::string head = "ping_" + std::to_string(run_.first + k);
       detected_.push_back(column_of(table, head + "_detected" + suffix));
@@ -38,50 +36,46 @@ class Run {
   /// Of the rows of which all is known up to a ping. \param yes  of what happened so far
   template <class Yes>
   [[nodiscard]] Share share_until(std::size_t ping, Yes yes) const {
-    ClusteredMean mean(clusters_);
     std::vector<double> so_far(ping + 1);
-    for (std::size_t row = 0; row < table_.index.size(); ++row) {
-      if (table_.valid[row] == 0) continue;
+    return share_of(means_.of_all([&](std::size_t row) {
+      if (table_.valid[row] == 0) return no_value;
       for (std::size_t k = 0; k <= ping; ++k) so_far[k] = table_.values[detected_[k]][row];
       const RunAnswer answer = run_answer(so_far, run_);
-      if (answer.known) mean.add(table_.index[row], yes(answer) ? 1.0 : 0.0);
-    }
-    return share_of(mean);
+      return !answer.known ? no_value : yes(answer) ? 1.0 : 0.0;
+    }));
   }
   /// Of the rows in which this ping is known.
   [[nodiscard]] Share share_in(std::size_t ping) const {
-    return share_of(mean_of(detected_[ping]));
+    return share_of(means_.of_column(detected_[ping]));
   }
   /// Of the valid rows: the tracker has the target with this ping or before.
   [[nodiscard]] Share tracked_until(std::size_t ping) const {
-    ClusteredMean mean(clusters_);
     const double last = static_cast<double>(run_.first) + static_cast<double>(ping);
-    for (std::size_t row = 0; row < table_.index.size(); ++row)
-      if (table_.valid[row] != 0)
-        mean.add(table_.index[row], table_.values[track_ping_][row] <= last ? 1.0 : 0.0);
-    return share_of(mean);
+    return share_of(means_.of_all([&](std::size_t row) {
+      if (table_.valid[row] == 0) return no_value;
+      return table_.values[track_ping_][row] <= last ? 1.0 : 0.0;
+    }));
   }
-  [[nodiscard]] double mean_range(std::size_t ping) const { return mean_of(range_[ping]).mean(); }
-  [[nodiscard]] double mean_time(std::size_t ping) const { return mean_of(time_[ping]).mean(); }
+  [[nodiscard]] double mean_range(std::size_t ping) const { return mean_of(range_[ping]); }
+  [[nodiscard]] double mean_time(std::size_t ping) const { return mean_of(time_[ping]); }
   [[nodiscard]] std::size_t pings() const { return detected_.size(); }
   [[nodiscard]] const PingRunPlan& rule() const { return run_; }
+  [[nodiscard]] bool weighted() const { return means_.weighted(); }
 
  private:
-  [[nodiscard]] ClusteredMean mean_of(std::size_t column) const {
-    ClusteredMean mean(clusters_);
-    for (std::size_t row = 0; row < table_.index.size(); ++row)
-      if (counts(table_, row, column)) mean.add(table_.index[row], table_.values[column][row]);
-    return mean;
+  [[nodiscard]] double mean_of(std::size_t column) const {
+    return means_.of_column(column).value(false);
   }
-  [[nodiscard]] Share share_of(const ClusteredMean& mean) const {
-    return {.value = mean.count() > 0.0 ? mean.mean() : no_value,
+  [[nodiscard]] Share share_of(const RowMean& mean) const {
+    return {.value = mean.count() > 0.0 ? mean.value(true) : no_value,
             .count = mean.count(),
-            .interval = mean.proportion(plan_.interval, plan_.confidence)};
+            .interval = mean.interval(true, plan_.interval, plan_.confidence),
+            .mean = mean};
   }
 
   const SummaryPlan& plan_;
   const PingRunPlan& run_;
-  Clusters clusters_;
+  RowMeans means_;
   const Table& table_;
   std::vector<std::size_t> detected_, range_, time_;  // [pings] columns
   std::size_t track_ping_ = 0;                        // column, with a tracker
@@ -123,6 +117,11 @@ SummaryTable by_ping(const Study& study, const Run& run, const std::string& suff
   if (rule.tracker)
     add_share(made, "ptracked",
               "the tracker believes a track of the target, so far: share of the realisations");
+  std::vector<std::string> weighed{"pd_", "pd_ever_"};
+  if (rule.initiates()) weighed.emplace_back("ptrack_");
+  if (rule.tracker) weighed.emplace_back("ptracked_");
+  if (run.weighted())
+    for (const std::string& head : weighed) add_worth(made, head);
   double missed = 1.0;
   for (std::size_t k = 0; k < run.pings(); ++k) {
     const Share here = run.share_in(k);
@@ -138,12 +137,15 @@ SummaryTable by_ping(const Study& study, const Run& run, const std::string& suff
     if (by_filter)
       put(made, {-std::expm1(static_cast<double>(k + 1) *
                              std::log1p(-study.measure.false_alarm_probability()))});
-    const auto put_share = [&](const Share& one) {
-      put(made, {one.value, one.interval.low, one.interval.high});
-    };
+    std::vector<Share> tracks;
     if (rule.initiates())
-      put_share(run.share_until(k, [](const RunAnswer& a) { return a.initiated >= 0; }));
-    if (rule.tracker) put_share(run.tracked_until(k));
+      tracks.push_back(run.share_until(k, [](const RunAnswer& a) { return a.initiated >= 0; }));
+    if (rule.tracker) tracks.push_back(run.tracked_until(k));
+    for (const Share& one : tracks) put(made, {one.value, one.interval.low, one.interval.high});
+    if (!run.weighted()) continue;
+    put_worth(made, here.mean);
+    put_worth(made, so_far.mean);
+    for (const Share& one : tracks) put_worth(made, one.mean);
   }
   return made;
 }

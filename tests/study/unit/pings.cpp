@@ -3,14 +3,19 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <iostream>
+#include <numbers>
 
 #include "core/error.h"
 #include "study/reader/study_reader.h"
 #include "study/sampling/design.h"
 #include "study/summary/intervals.h"
-#include "study/summary/summary.h"
+#include "study/summary/summary_parts.h"
+#include "support/function_study.h"
+#include "support/mixture.h"
 #include "support/plain_sea.h"
 #include "support/summary_tables.h"
 #include "support/temporary_directory.h"
@@ -188,6 +193,150 @@ TEST(PingTables, WhenItIsDetectedFirst) {
   EXPECT_GT(column(first, "never_high")[0], column(first, "never")[0]);
 }
 
+/// Rows whose z is drawn far out: ping k detects with probability 0.6 where z is beyond a threshold
+/// that falls from ping to ping. Ranges follow another input, drawn off its law too. One ping in
+/// twenty is not known.
+constexpr std::array<double, pings> thresholds{3.4, 3.2, 3.0, 2.8, 2.6, 2.4};
+constexpr double each = 0.6;
+support::FunctionStudy drawn_far_out() {
+  support::FunctionStudy made;
+  made.measure = "detected_ever";
+  made.of = [](std::span<const double>, double) { return 0.0; };
+  made.study.realisations = 1500;
+  made.study.variables = {support::normal_input("z"), support::normal_input("y")};
+  made.study.proposal = support::mixture({{ScoreLaw{2.8, 1.0}, ScoreLaw{1.5, 1.0}}});
+  made.study.measure = study_of_pings().measure;
+  made.study.summary.quantiles = {0.001, 0.003};
+  made.study.summary.roc = made.study.summary.sensitivity = made.study.summary.convergence = false;
+  return made;
+}
+Table rows_of(const support::FunctionStudy& made) {
+  Table table = made.table();
+  const std::size_t ever = table.columns.size() - 1;
+  const Table runs = rows_of(made.study.seed + 500, table.index.size(), each, 0.05);
+  for (std::size_t c = 0; c < runs.columns.size(); ++c) {
+    table.columns.push_back(runs.columns[c]);
+    table.values.push_back(runs.values[c]);
+  }
+  for (std::size_t row = 0; row < table.index.size(); ++row) {
+    const double z = table.values[0][row], y = table.values[1][row];
+    std::vector<double> detected;
+    for (std::size_t k = 0; k < pings; ++k) {
+      double& hit = table.values[ever + 1 + 3 * k][row];
+      if (hit == 1.0 && !(z > thresholds.at(k))) hit = 0.0;
+      table.values[ever + 2 + 3 * k][row] += 100.0 * y;
+      detected.push_back(hit);
+    }
+    const RunAnswer answer = run_answer(detected, *made.study.measure.run);
+    table.values[ever][row] = !answer.known ? std::nan("") : answer.first >= 0 ? 1.0 : 0.0;
+  }
+  return table;
+}
+
+// Truths in closed form: z lies between the thresholds of pings j and j − 1 with a probability that
+// is known, and then pings from j on detect by themselves.
+TEST(WeightedPings, IntervalsHoldTheClosedFormsAsOftenAsTheySay) {
+  const auto tail = [](double z) { return 0.5 * std::erfc(z / std::numbers::sqrt2); };
+  const std::vector<double> chain = chance_of_track(each, pings, 2, 3);
+  std::vector<double> ever(pings, 0.0), track(pings, 0.0);
+  for (std::size_t k = 0; k < pings; ++k)
+    for (std::size_t j = 0; j <= k; ++j) {
+      const double band = tail(thresholds.at(j)) - (j > 0 ? tail(thresholds.at(j - 1)) : 0.0);
+      ever[k] += band * (1.0 - std::pow(1.0 - each, k - j + 1));
+      track[k] += band * chain[k - j];
+    }
+  support::FunctionStudy made = drawn_far_out();
+  std::vector<support::Coverage> in_ping(pings), so_far(pings), begun(pings), range(pings),
+      first_time(pings), without(pings);
+  support::Coverage when;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    made.study.seed = seed;
+    Table rows = rows_of(made);
+    const auto tables = ping_tables(made.study, rows);
+    const SummaryTable &t = named(tables, "pings"), &first = named(tables, "first_detection");
+    const auto statistics = statistics_table(made.study, rows);
+    const auto take = [&](support::Coverage& to, const std::string& name, std::size_t k,
+                          double truth) {
+      to.add(column(t, name)[k], column(t, name + "_low")[k], column(t, name + "_high")[k], truth);
+    };
+    for (std::size_t k = 0; k < pings; ++k) {
+      take(in_ping[k], "pd", k, each * tail(thresholds.at(k)));
+      take(so_far[k], "pd_ever", k, ever[k]);
+      if (k > 0) take(begun[k], "ptrack", k, track[k]);
+      range[k].add(column(t, "range")[k], 0.0, 0.0, 0.0);
+      first_time[k].add(column(t, "first")[k], 0.0, 0.0, 0.0);
+    }
+    // What the whole run comes to is a measure of the rows as well.
+    const std::size_t of_run = 4;
+    ASSERT_EQ(statistics.columns[0].labels[2], "detected_ever");
+    EXPECT_EQ(column(t, "pd_ever").back(), column(statistics, "mean")[2]);
+    EXPECT_EQ(column(t, "pd_ever_low").back(), column(statistics, "mean_low")[2]);
+    EXPECT_EQ(column(t, "pd_ever_high").back(), column(statistics, "mean_high")[2]);
+    EXPECT_EQ(column(t, "pd_ever_effective").back(), column(statistics, "effective_of_event")[2]);
+    EXPECT_EQ(column(t, "pd_ever_largest_share").back(), column(statistics, "largest_share")[2]);
+    EXPECT_EQ(column(t, "count").back(), column(statistics, "count")[2]);
+    EXPECT_EQ(column(first, "never")[0], 1.0 - column(t, "pd_ever").back());
+    ASSERT_EQ(rows.columns[of_run].name, "detected_ever");
+    for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
+      const double p = column(first, "probability")[i];
+      const auto reached = std::find_if(ever.begin(), ever.end(), [&](double x) { return x >= p; });
+      const double truth = 2.0 + static_cast<double>(reached - ever.begin());
+      const auto end = [&](const char* name) {
+        const double ping = column(first, name)[i];
+        return std::isnan(ping) ? infinity : ping;
+      };
+      when.add(0.0, end("ping_low"), end("ping_high"), truth);
+    }
+    // Wrong: no weights.
+    for (Column& one : rows.columns)
+      if (one.name == log_weight_column) one.name = "something";
+    const auto unweighted = ping_tables(made.study, rows);
+    const SummaryTable& u = named(unweighted, "pings");
+    for (std::size_t k = 0; k < pings; ++k)
+      without[k].add(column(u, "pd_ever")[k], column(u, "pd_ever_low")[k],
+                     column(u, "pd_ever_high")[k], ever[k]);
+  }
+  const auto covers = [](const support::Coverage& c, double truth) {
+    EXPECT_GE(c.held, c.least());
+    EXPECT_NEAR(c.mean(), truth, 5.0 * c.deviation() / std::sqrt(double(c.count)));
+  };
+  for (std::size_t k = 0; k < pings; ++k) {
+    covers(in_ping[k], each * tail(thresholds.at(k)));
+    covers(so_far[k], ever[k]);
+    if (k > 0) covers(begun[k], track[k]);
+    EXPECT_NEAR(range[k].mean(), 1000.0 * double(k + 1),
+                5.0 * range[k].deviation() / std::sqrt(60.0));
+    EXPECT_NEAR(first_time[k].mean(), ever[k] - (k > 0 ? ever[k - 1] : 0.0),
+                5.0 * first_time[k].deviation() / std::sqrt(60.0));
+    EXPECT_EQ(without[k].held, 0);
+    std::cout << "ping " << k + 2 << ": held " << in_ping[k].held << ", so far " << so_far[k].held
+              << ", track " << begun[k].held << ", so far without weights " << without[k].held
+              << " of 60\n";
+  }
+  EXPECT_GE(when.held, when.least());
+}
+
+TEST(WeightedPings, WithAllWeightsAlikeTheTablesAreThoseWithoutThem) {
+  const Study study = study_of_pings();
+  Table rows = rows_of(4, 500, 0.3, 0.1);
+  const auto plain = ping_tables(study, rows);
+  rows.columns.push_back({.name = log_weight_column, .unit = "1", .role = Column::Role::weight});
+  rows.values.emplace_back(std::vector<double>(500, 0.0));
+  const auto with = ping_tables(study, rows);
+  const SummaryTable &a = named(plain, "pings"), &b = named(with, "pings");
+  for (const char* name : {"ping", "count", "known"}) EXPECT_EQ(column(a, name), column(b, name));
+  for (std::size_t k = 0; k < pings; ++k) {
+    for (const char* name :
+         {"time", "range", "pd", "pd_ever", "first", "pd_ever_independent", "ptrack"})
+      EXPECT_NEAR(column(a, name)[k], column(b, name)[k], 1e-9) << name;
+    const double n = column(b, "count")[k], hits = n * column(a, "pd_ever")[k];
+    EXPECT_NEAR(column(b, "pd_ever_effective")[k], std::min(hits, n - hits), 1e-6);
+    EXPECT_NEAR(column(b, "pd_ever_largest_share")[k], 1.0 / std::min(hits, n - hits), 1e-9);
+  }
+  EXPECT_EQ(column(named(plain, "first_detection"), "ping").front(),
+            column(named(with, "first_detection"), "ping").front());
+}
+
 /// The message of a study that is refused, "" of one that is read.
 std::string refusal(const std::string& measure, const std::string& more = "") {
   const support::TemporaryDirectory folder;
@@ -216,6 +365,14 @@ TEST(PingReader, SaysWhatItWants) {
   EXPECT_EQ(
       refusal("detection = true\npings = { first = 2, count = 4, initiation = [3, 4] }\n", five),
       "");
+}
+
+TEST(PingReader, TakesRowsThatHaveWeights) {
+  EXPECT_EQ(refusal("detection = true\ntarget_place = true\npings = true\n[summary]\nmap = true\n"
+                    "[vary]\n\"target.0.strength_db\" = { law = \"normal\", mean = 10.0, "
+                    "deviation = 3.0 }\n[[rare.component]]\ncentre = { strength_db = 2.0 }\n",
+                    "count = 5\ninterval = 10.0\n"),
+            "");
 }
 
 TEST(PingRow, ItsOwnPingIsOneOfTheRun) {
