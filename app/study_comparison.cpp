@@ -13,6 +13,7 @@
 #include "app/output.h"
 #include "app/pictures.h"
 #include "core/error.h"
+#include "core/text.h"
 #include "io/files/files_read.h"
 #include "io/ping/provenance.h"
 #include "io/result/result_file.h"
@@ -281,6 +282,11 @@ int compare_studies(const StudyOptions& options, const RunStudy& run) {
   for (const study::Study& study : sides.studies)
     if (!options.until.empty()) study::check_until(study);
   const study::Until until(sides.studies.front(), options.until);
+  for (const study::UntilTarget& asked : until.targets())
+    if (asked.over_map)
+      throw InputError({.where = "--until",
+                        .got = in_quotes(asked.name) + " of a comparison",
+                        .expected = "a measure, or one along an axis: a comparison has no maps"});
   std::uint64_t end = std::numeric_limits<std::uint64_t>::max();
   std::string known;
   if (until)

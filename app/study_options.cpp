@@ -57,20 +57,28 @@ study::Until until_of(const StudyOptions& options, const StudyOrder& order) {
 }  // namespace
 
 std::string known_text(const study::Known& known) {
-  const std::string where = known.where.empty() ? "" : " (" + known.where + ')';
+  std::string where = known.where;
+  if (std::isfinite(known.rows))
+    where += ", " + count_of(static_cast<std::size_t>(known.rows), "realisation");
+  if (!where.empty()) where = " (" + where + ')';
+  const std::string empty = known.empty == 0 ? ""
+                                             : fmt::format("; {} of {} cells without a realisation",
+                                                           known.empty, known.cells);
   if (known.rule.empty())
-    return fmt::format(
-        "{}: {}{}, asked for ± {:g}", known.name,
-        std::isfinite(known.half_width) ? fmt::format("± {:.3g}", known.half_width) : "not known",
-        where.empty() ? "" : " at the worst" + where, known.asked);
+    return fmt::format("{}: {}{}, asked for ± {:g}", known.name,
+                       std::isfinite(known.half_width) ? fmt::format("± {:.3g}", known.half_width)
+                                                       : "not known",
+                       where.empty() ? "" : " at the worst" + where, known.asked) +
+           empty;
   const auto first = known.rule.find_first_not_of(' ');
   std::string text =
       fmt::format("{}: {}: {}{}", known.name, known.rule.substr(std::min(first, known.rule.size())),
                   known.holds ? "holds" : "does not hold", where);
   const study::RuleValues& values = known.values;
-  if (!std::isfinite(values.mean)) return text;
-  return text + fmt::format(", {:.4g} ({:.4g} to {:.4g} over all looks)", values.mean, values.low,
-                            values.high);
+  if (std::isfinite(values.mean))
+    text += fmt::format(", {:.4g} ({:.4g} to {:.4g} over all looks)", values.mean, values.low,
+                        values.high);
+  return text + empty;
 }
 
 void add_study_options(const Command& command, StudyOptions& options) {
@@ -87,8 +95,9 @@ void add_study_options(const Command& command, StudyOptions& options) {
       .add_option(
           "--until", options.until,
           "stop once the confidence interval is at most twice this wide: of the study's first "
-          "question, or of NAME, a measure (pd), the worst bin of a table (pd_by_range) or an "
-          "index (total_order); or once a rule holds, 'pd: low > 0.9 || high < 0.9', of mean, low, "
+          "question, or of NAME, a measure (pd), the worst bin of a table (pd_by_range), the worst "
+          "cell of the map (map_pd) or an index (total_order); or once a rule holds, 'pd: low > "
+          "0.9 || high < 0.9', of mean, low, "
           "high, half_width and rows; repeated, all of them; looked at after 100, 200, ... 1000, "
           "2000, ... realisations or blocks; of --compare: of the paired difference")
       .type_name("[NAME=]HALF_WIDTH|RULE")

@@ -26,7 +26,19 @@ std::string shown_name(const Column& column) {
   return is_proportion(column) ? proportion_name(column) : column.name;
 }
 
-/// All that --until can name: measures, measures along the axes of [summary], indices.
+/// The columns that a map's cells are made of.
+std::vector<std::string> columns_of(const SummaryMap& map) {
+  std::vector<std::string> all;
+  if (map.depth) all.push_back(map.depth->column);
+  if (map.range.empty())
+    all.insert(all.end(), {map.across.column, map.up.column});
+  else
+    all.insert(all.end(), {map.range, map.bearing});
+  return all;
+}
+
+/// All that --until can name: measures, measures along the axes of [summary] or in the cells of its
+/// map, indices.
 std::vector<UntilTarget> possible(const Study& study) {
   std::vector<UntilTarget> all;
   const std::vector<Column> every = answer_columns(study);
@@ -40,13 +52,27 @@ std::vector<UntilTarget> possible(const Study& study) {
         return axis.column == column.name;
       });
       if (along_itself && !is_proportion(column)) continue;
-      all.push_back({.name = along(shown_name(column), axes), .column = column.name, .axes = axes});
+      all.push_back({.name = along(shown_name(column), axes),
+                     .column = column.name,
+                     .axes = axes,
+                     .shown = shown_name(column)});
     }
+  if (study.summary.map) {
+    const std::vector<std::string> places = columns_of(*study.summary.map);
+    for (const Column& column : every)
+      if (column.role == Column::Role::measure &&
+          std::find(places.begin(), places.end(), column.name) == places.end())
+        all.push_back({.name = "map_" + shown_name(column),
+                       .column = column.name,
+                       .over_map = true,
+                       .shown = shown_name(column)});
+  }
   const std::optional<std::size_t> question = first_question(every);
   if (study.design != Design::saltelli || !question) return all;
   for (const char* index : {"first_order", "total_order", "second_order"})
     if (std::string_view(index) != "second_order" || study.design_options.second_order)
-      all.push_back({.name = index, .column = every[*question].name, .index = index});
+      all.push_back(
+          {.name = index, .column = every[*question].name, .index = index, .shown = index});
   return all;
 }
 
@@ -86,42 +112,71 @@ const std::vector<double>* values_of(const SummaryTable& table, const std::strin
   return nullptr;
 }
 
-/// The widest interval of a column of a table.
-void find_widest(const SummaryTable& table, const std::string& column, Known& known) {
-  const auto* low = values_of(table, column + "_low");
-  const auto* high = values_of(table, column + "_high");
-  if (low == nullptr || high == nullptr || low->empty()) return;
-  std::size_t widest = 0;
-  double half = -1.0;
-  for (std::size_t row = 0; row < low->size(); ++row) {
-    const double width = 0.5 * ((*high)[row] - (*low)[row]);
-    const double here = std::isfinite(width) ? width : infinity;
-    if (here > half) widest = row;
-    half = std::max(half, here);
+/// The rows of a table that tell of one target: an estimate each, with its interval.
+class Answers {
+ public:
+  Answers(const SummaryTable& table, const UntilTarget& target, const std::string& column)
+      : table_(table),
+        target_(target),
+        mean_(values_of(table, column)),
+        low_(values_of(table, column + "_low")),
+        high_(values_of(table, column + "_high")),
+        count_(values_of(table, "count")) {
+    if (const auto* own = values_of(table, column + "_count")) count_ = own;
   }
-  known.half_width = half;
-  known.where = place_in(table, widest);
-}
 
-/// Whether a rule holds in every row of a table; else where it does not.
-void find_against(const SummaryTable& table, const std::string& column, const Expression& rule,
-                  Known& known) {
-  const auto* mean = values_of(table, column);
-  const auto* low = values_of(table, column + "_low");
-  const auto* high = values_of(table, column + "_high");
-  const auto* count = values_of(table, "count");
-  if (mean == nullptr || low == nullptr || high == nullptr || low->empty()) return;
-  known.holds = true;
-  for (std::size_t row = 0; row < low->size(); ++row) {
-    known.values = {(*mean)[row], (*low)[row], (*high)[row],
-                    count == nullptr ? std::nan("") : (*count)[row]};
-    if (study::holds(rule, known.values)) continue;
-    known.holds = false;
-    known.where = place_in(table, row);
-    return;
+  [[nodiscard]] bool any() const { return mean_ && low_ && high_ && !low_->empty(); }
+  [[nodiscard]] RuleValues at(std::size_t row) const {
+    return {(*mean_)[row], (*low_)[row], (*high_)[row], count_ ? (*count_)[row] : no_value};
   }
-  known.values = {std::nan(""), std::nan(""), std::nan(""), 0.0};  // of no bin in particular
-}
+  /// The widest interval.
+  void find_widest(Known& known) const {
+    std::optional<std::size_t> widest;
+    double half = -1.0;
+    for (std::size_t row = 0; row < low_->size(); ++row) {
+      if (is_empty(row, known)) continue;
+      const double width = 0.5 * ((*high_)[row] - (*low_)[row]);
+      const double here = std::isfinite(width) ? width : infinity;
+      if (here > half) widest = row;
+      half = std::max(half, here);
+    }
+    if (!widest) return;
+    known.half_width = half;
+    tell_where(*widest, known);
+  }
+  /// Whether a rule holds in every row; else where it does not.
+  void find_against(Known& known) const {
+    std::optional<std::size_t> against;
+    for (std::size_t row = 0; row < low_->size(); ++row) {
+      if (is_empty(row, known) || against) continue;
+      known.holds = true;
+      if (!study::holds(*target_.rule, at(row))) against = row;
+    }
+    known.values = {no_value, no_value, no_value, 0.0};  // of no bin in particular
+    if (!against) return;
+    known.holds = false;
+    known.values = at(*against);
+    tell_where(*against, known);
+  }
+
+ private:
+  /// Cells of a map that no row lies in do not count: a square round a disc has such corners.
+  [[nodiscard]] bool is_empty(std::size_t row, Known& known) const {
+    if (!target_.over_map) return false;
+    ++known.cells;
+    const bool empty = count_ == nullptr || !((*count_)[row] > 0.0);
+    known.empty += empty ? 1 : 0;
+    return empty;
+  }
+  void tell_where(std::size_t row, Known& known) const {
+    known.where = place_in(table_, row);
+    if (target_.index.empty() && count_ != nullptr) known.rows = (*count_)[row];
+  }
+
+  const SummaryTable& table_;
+  const UntilTarget& target_;
+  const std::vector<double>*mean_, *low_, *high_, *count_;
+};
 
 /// "pd: low > 0.9": the name before the colon; none of "a ? b : c".
 std::string name_before_colon(const std::string& text) {
@@ -283,9 +338,11 @@ OrderedEstimate::OrderedEstimate(RunningEstimate estimate, std::uint64_t first, 
         {.column = at,
          .proportion = at < every.size() && is_proportion(every[at]),
          .of = RowMean(clusters_of(study), is_weighted(study), WeightedMean::Of::all_rows)});
-    if (target.axes.empty() && target.index.empty()) continue;
+    if (!target.has_table()) continue;
     takes(target.column);
     for (const SummaryAxis& axis : target.axes) takes(axis.column);
+    if (target.over_map)
+      for (const std::string& column : columns_of(*study.summary.map)) takes(column);
     if (is_weighted(study)) takes(log_weight_column);
   }
   weight_ = place(log_weight_column);
@@ -297,17 +354,21 @@ OrderedEstimate::OrderedEstimate(RunningEstimate estimate, std::uint64_t first, 
   rows_.values.resize(taken_.size());
 }
 
+std::vector<SummaryTable> OrderedEstimate::tables_of(const Study& study,
+                                                     const UntilTarget& target) const {
+  if (!target.index.empty()) return saltelli_tables(study, rows_);
+  if (target.over_map) return map_tables(study, rows_);
+  if (!target.axes.empty()) return tables_by(study, target.axes, rows_);
+  return {};
+}
+
 Known OrderedEstimate::known_rule(const UntilTarget& target, std::size_t mean) const {
   Known known{.name = target.name, .where = "", .rule = target.rule->text()};
   const Study& study = *until_.of_rules();
-  if (!target.index.empty()) {
-    for (const SummaryTable& table : saltelli_tables(study, rows_))
-      find_against(table, target.index, *target.rule, known);
-  } else if (!target.axes.empty()) {
-    for (const SummaryTable& table : tables_by(study, target.axes, rows_))
-      for (const Column& column : rows_.columns)
-        if (column.name == target.column)
-          find_against(table, shown_name(column), *target.rule, known);
+  if (target.has_table()) {
+    for (const SummaryTable& table : tables_of(study, target))
+      if (const Answers answers(table, target, target.shown); answers.any())
+        answers.find_against(known);
   } else {
     const SummaryPlan& plan = study.summary;
     const RowMean& of = means_[mean].of;
@@ -326,13 +387,10 @@ Known OrderedEstimate::known(const UntilTarget& target, std::size_t mean) const 
     known.name = estimate_.name();
     if (const std::optional<Estimate> now = estimate_.estimate())
       known.half_width = 0.5 * (now->high - now->low);
-  } else if (!target.index.empty()) {
-    for (const SummaryTable& table : saltelli_tables(*until_.study(), rows_))
-      find_widest(table, target.index, known);
-  } else if (!target.axes.empty()) {
-    for (const SummaryTable& table : tables_by(*until_.study(), target.axes, rows_))
-      for (const Column& column : rows_.columns)
-        if (column.name == target.column) find_widest(table, shown_name(column), known);
+  } else if (target.has_table()) {
+    for (const SummaryTable& table : tables_of(*until_.study(), target))
+      if (const Answers answers(table, target, target.shown); answers.any())
+        answers.find_widest(known);
   } else {
     const SummaryPlan& plan = until_.study()->summary;
     const RowMean& of = means_[mean].of;

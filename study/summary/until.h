@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "study/expression/expression.h"
+#include "study/plan/no_value.h"
 #include "study/sampling/clusters.h"
 #include "study/sampling/index_set.h"
 #include "study/summary/summary.h"
@@ -35,7 +36,13 @@ struct UntilTarget {
   // Where it stands:
   std::string column{};             ///< of the table of rows: a measure
   std::vector<SummaryAxis> axes{};  ///< of a table along them; none: the mean of all rows
+  bool over_map = false;            ///< of the cells of [summary.map]
   std::string index{};  ///< "first_order", …: an index of sensitivity; "": none of these
+  std::string shown{};  ///< its column in those tables
+
+  [[nodiscard]] bool has_table() const noexcept {
+    return !index.empty() || !axes.empty() || over_map;
+  }
 };
 
 /// "0.05", "pd_by_range=0.1", "pd: low > 0.9 || high < 0.9", "low > 0.9": a target of which name
@@ -89,7 +96,9 @@ struct Known {
   std::string where;   ///< the widest: "range 12500"; "": there is one alone
   std::string rule{};  ///< in place of a half-width; `where` is one for which it does not hold
   bool holds = false;
-  RuleValues values{};  ///< of a rule without bins, or there
+  RuleValues values{};               ///< of a rule without bins, or there
+  double rows = no_value;            ///< realisations there, of bins and cells; NaN: of neither
+  std::size_t cells = 0, empty = 0;  ///< of a map, and those without a realisation
   [[nodiscard]] bool enough() const noexcept { return rule.empty() ? half_width <= asked : holds; }
 };
 
@@ -119,6 +128,9 @@ class OrderedEstimate {
 
  private:
   void take(const Row& row);
+  /// The tables that tell of a target; none of a mean of all rows.
+  [[nodiscard]] std::vector<SummaryTable> tables_of(const Study& study,
+                                                    const UntilTarget& target) const;
   [[nodiscard]] Known known(const UntilTarget& target, std::size_t mean) const;
   [[nodiscard]] Known known_rule(const UntilTarget& target, std::size_t mean) const;
   [[nodiscard]] bool all_enough() const;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <iostream>
 #include <random>
 
@@ -29,11 +30,12 @@ Study study_of(const std::string& head, const std::string& summary = "") {
 }
 
 /// depth, wind, level, detected, …: the deeper the more scatter, detected as a coin falls.
-Row row_of(const Study& study, std::uint64_t index) {
+/// \param columns  of a row
+Row row_of(std::size_t columns, std::uint64_t index) {
   const double depth = 20.0 + 60.0 * uniform_draw(1, index, 0),
                wind = 3.0 + 2.0 * uniform_draw(1, index, 1), u = uniform_draw(1, index, 2);
   Row row{.index = index};
-  row.values.assign(columns(study).size(), 0.0);
+  row.values.assign(columns, 0.0);
   row.values[0] = depth;
   row.values[1] = wind;
   row.values[2] = 0.2 * depth * (u - 0.5);
@@ -45,14 +47,15 @@ Row row_of(const Study& study, std::uint64_t index) {
 std::uint64_t end_of(const Study& study, const std::vector<std::string>& texts,
                      bool shuffled = false, std::vector<Known>* known = nullptr) {
   OrderedEstimate estimate(RunningEstimate(study), 0, Until(study, texts));
-  std::vector<std::uint64_t> order(20000);
+  const std::size_t of_row = columns(study).size();
+  std::vector<std::uint64_t> order(study.realisations);
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   if (shuffled)  // each within its hundred
     for (std::size_t i = 0; i + 100 <= order.size(); i += 100)
       std::shuffle(order.begin() + std::ptrdiff_t(i), order.begin() + std::ptrdiff_t(i + 100),
                    std::mt19937(7));
   for (const std::uint64_t index : order) {
-    estimate.add(row_of(study, index));
+    estimate.add(row_of(of_row, index));
     if (estimate.enough()) break;
   }
   if (known != nullptr) *known = estimate.known();
@@ -91,6 +94,83 @@ TEST(Until, TheWorstAnswerDecides) {
   EXPECT_FALSE(known[0].enough());
 }
 
+const std::string over_map =
+    "by = []\nmap = { east = { axis = \"depth\", edges = [0.0, 20.0, 50.0, 81.0] }, "
+    "north = { axis = \"wind_speed\", edges = [3.0, 3.5, 5.0] } }\n";
+
+// Cells that no row can lie in do not count; of the others the worst decides, and says of how many
+// rows it is. Where it stops is counted by hand.
+TEST(Until, TheWorstCellOfAMapDecides) {
+  const Study study = study_of("realisations = 20000\n", over_map);
+  const std::size_t of_row = columns(study).size();
+  std::uint64_t expected = 0;
+  double worst = 0.0, rows_there = 0.0;
+  std::array<double, 4> count{}, hits{};
+  for (std::uint64_t index = 0; expected == 0; ++index) {
+    const Row row = row_of(of_row, index);
+    const std::size_t cell = (row.values[0] < 50.0 ? 0 : 2) + (row.values[1] < 3.5 ? 0 : 1);
+    count.at(cell) += 1.0;
+    hits.at(cell) += row.values[3];
+    if (!is_look(index + 1)) continue;
+    worst = 0.0;
+    for (std::size_t c = 0; c < 4; ++c) {
+      const Interval interval = wilson(hits.at(c), count.at(c), 0.95);
+      const double half = 0.5 * (interval.high - interval.low);
+      if (half > worst) rows_there = count.at(c);
+      worst = std::max(worst, half);
+    }
+    if (worst <= 0.07) expected = index + 1;
+  }
+  std::vector<Known> known;
+  EXPECT_EQ(end_of(study, {"map_pd=0.07"}, false, &known), expected);
+  EXPECT_GT(expected, 1000U);  // an eighth of the rows: 0.98/√(n/8) ≤ 0.07 from n ≈ 1570
+  EXPECT_NEAR(known[0].half_width, worst, 1e-12);
+  EXPECT_EQ(known[0].rows, rows_there);
+  EXPECT_EQ(known[0].cells, 6U);
+  EXPECT_EQ(known[0].empty, 2U);
+  EXPECT_TRUE(known[0].where.starts_with("depth ")) << known[0].where;
+  EXPECT_NE(known[0].where.find(", wind_speed 3.25"), std::string::npos) << known[0].where;
+  EXPECT_EQ(Until(study, {"map_pd=0.07"}).text(), "--until map_pd=0.07");
+  // Of other measures, and in whatever order rows come.
+  const std::vector<std::string> level{"map_echo_level_db=0.5"};
+  EXPECT_GT(end_of(study, level), 0U);
+  EXPECT_EQ(end_of(study, level, true), end_of(study, level));
+}
+
+TEST(Until, RulesOfCellsOfAMap) {
+  const Study study = study_of("realisations = 10000\n", over_map);
+  std::vector<Known> known;
+  // An eighth of the rows, of a share of one half, at the confidence of rules.
+  const std::uint64_t end = end_of(study, {"map_pd: low > 0.4"}, false, &known);
+  EXPECT_GE(end, 1000U);
+  EXPECT_LE(end, 4000U);
+  EXPECT_TRUE(known[0].holds);
+  EXPECT_EQ(known[0].empty, 2U);
+  EXPECT_EQ(end_of(study, {"map_pd: low > 0.6"}, false, &known), 0U);
+  EXPECT_TRUE(known[0].where.starts_with("depth ")) << known[0].where;
+  EXPECT_EQ(known[0].rows, known[0].values.rows);
+  EXPECT_GT(known[0].rows, 1000.0);
+  // Seldom cells may be let go.
+  const std::uint64_t large =
+      end_of(study, {"pd: rows >= 900", "map_pd: rows < 200 || half_width < 0.1"});
+  EXPECT_GE(large, 900U);
+  EXPECT_LT(large, end_of(study, {"map_pd: half_width < 0.1"}));
+  EXPECT_EQ(end_of(study, {"map_pd: rows > 100000"}), 0U);
+}
+
+// Of no cell at all nothing is known.
+TEST(Until, AMapThatNoRowLiesInIsNotKnown) {
+  const Study study = study_of(
+      "realisations = 2000\n",
+      "by = []\nmap = { east = { axis = \"depth\", edges = [0.0, 10.0] }, north = { axis = "
+      "\"wind_speed\", edges = [0.0, 9.0] } }\n");
+  std::vector<Known> known;
+  EXPECT_EQ(end_of(study, {"map_pd=0.5"}, false, &known), 0U);
+  EXPECT_EQ(known[0].half_width, infinity);
+  EXPECT_EQ(known[0].empty, 1U);
+  EXPECT_EQ(end_of(study, {"map_pd: low >= 0 || rows < 10"}), 0U);
+}
+
 TEST(Until, StopsWhereTheRowsSayWhateverTheirOrder) {
   const Study study = study_of("realisations = 20000\n", "by = [{ axis = \"depth\", bins = 4 }]\n");
   const std::vector<std::string> texts{"pd_by_depth=0.06", "echo_level_db=0.2"};
@@ -124,6 +204,10 @@ TEST(Until, FaultsSayWhatCanBeAskedFor) {
   EXPECT_NE(unknown.find("pd_by_depth"), std::string::npos);
   EXPECT_NE(unknown.find("(did you mean \"pd_by_depth\"?)"), std::string::npos) << unknown;
   EXPECT_EQ(unknown.find("total_order"), std::string::npos);  // of saltelli alone
+  EXPECT_EQ(unknown.find("map_pd"), std::string::npos);       // of those with a map
+  EXPECT_NE(fault_of(study_of("realisations = 100\n", over_map), {"map_pf=0.1"})
+                .find("(did you mean \"map_pd\"?)"),
+            std::string::npos);
   EXPECT_EQ(fault_of(study, {"pd=0.1", "0.2", "pd=0.3"}),
             "--until: found \"pd=0.3\" beside \"pd=0.1\", expected each answer once");
   EXPECT_EQ(Until(study, {"0.05", "pd_by_depth=0.1"}).text(),
@@ -245,7 +329,7 @@ TEST(Until, AFunctionOfTheRows) {
   });
   OrderedEstimate estimate(RunningEstimate(study), 0, until);
   for (std::uint64_t index = 0; index < 1000 && !estimate.enough(); ++index)
-    estimate.add(row_of(study, index));
+    estimate.add(row_of(columns(study).size(), index));
   EXPECT_EQ(estimate.enough(), 300U);
   EXPECT_EQ(asked, (std::vector<std::size_t>{100, 200, 300}));
 }
