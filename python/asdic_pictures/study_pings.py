@@ -31,7 +31,9 @@ def draw_one(study: Study, table: SummaryTable):
         band(axes[0], table, "ping", name, shade, words)
     axes[0].plot(table["ping"].values, table["pd_ever_independent"].values, color=style.BLUE, ls=(0, (4, 2)), lw=1.0,
                  label="or before, were pings independent")
-    axes[0].set_ylim(-0.02, 1.02)
+    top = max(float(np.nanmax(table[f"{name}_high"].values)) for name, _, _ in shown)
+    top = 1.0 if top > 0.3 else top  # of rare events not a line along the bottom
+    axes[0].set_ylim(-0.02 * top, 1.02 * top)
     axes[0].set_ylabel("probability of detection")
     axes[0].set_xlabel("ping")
     axes[0].xaxis.set_major_locator(style.ticker.MaxNLocator(8, integer=True, steps=[1, 2, 5, 10], min_n_ticks=1))
