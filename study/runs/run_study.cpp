@@ -113,13 +113,21 @@ Existing look_at(const std::filesystem::path& output, const Work& work, IndexRan
                    file.fingerprint().identity + ")");
     const IndexRange there = file.range();
     const bool whole = file.complete() && file.stopped_by().empty();
+    const std::string otherwise = "name another output, or --fresh to write over it";
+    if (until && whole && there == range)
+      throw InputError({.where = output.string(),
+                        .got = "the whole study, realisations " + index_text(there) +
+                               ", which tells no less than it would with --until",
+                        .expected = "a file that may end earlier: leave --until (or study.until) "
+                                    "out to keep this one, " +
+                                    otherwise});
     if (until && whole)
       throw InputError(
           {.where = output.string(),
-           .got = "the whole study, realisations " + index_text(there) +
-                  ", which answers more than --until asks for",
-           .expected = "a file that may end earlier: leave --until (or study.until) out to keep "
-                       "this one, name another output, or --fresh to write over it"});
+           .got = "realisations " + index_text(there) + ", all of them, made without an early end",
+           .expected = "a file that may end earlier: leave --until (or study.until) "
+                       "out to go on from these, " +
+                       otherwise});
     if (there.first < range.first || there.end > range.end)
       throw InputError({.where = output.string(),
                         .got = "realisations " + index_text(there) + " of this study",

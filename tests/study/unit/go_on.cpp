@@ -64,9 +64,12 @@ TEST_F(GoOn, AWholeStudyIsNotEndedEarlier) {
   EXPECT_EQ(said(text), "written");
   EXPECT_EQ(said(text, false, Until(0.5)),
             (folder / "s.h5").string() +
-                ": found the whole study, realisations 0:6, which answers more than --until asks "
-                "for, expected a file that may end earlier: leave --until (or study.until) out to "
-                "keep this one, name another output, or --fresh to write over it");
+                ": found the whole study, realisations 0:6, which tells no less than it would with "
+                "--until, expected a file that may end earlier: leave --until (or study.until) out "
+                "to keep this one, name another output, or --fresh to write over it");
+  std::string longer = text;
+  longer.replace(longer.find("= 6"), 3, "= 9");
+  EXPECT_SAYS(said(longer, false, Until(0.5)), "out to go on from these, name another output");
   EXPECT_EQ(made, 0);
   EXPECT_EQ(said(text), "written");
 }
