@@ -31,7 +31,8 @@ def draw_one(study: Study, table: SummaryTable):
         band(axes[0], table, "ping", name, shade, words)
     axes[0].plot(table["ping"].values, table["pd_ever_independent"].values, color=style.BLUE, ls=(0, (4, 2)), lw=1.0,
                  label="or before, were pings independent")
-    top = max(float(np.nanmax(table[f"{name}_high"].values)) for name, _, _ in shown)
+    ends = [f"{name}_high" for name, _, _ in shown] + ["pd_ever_independent"]
+    top = max(float(np.nanmax(table[end].values)) for end in ends)
     top = 1.0 if top > 0.3 else top  # of rare events not a line along the bottom
     axes[0].set_ylim(-0.02 * top, 1.02 * top)
     axes[0].set_ylabel("probability of detection")

@@ -149,6 +149,24 @@ def rules_stop():
     check('did you mean "p_over"?' in said, said)
 
 
+def cells_of_a_map_stop():
+    """East of the array, between 2 and 4 km: one of two cells has all rows."""
+    place = ["--set", "measure.target_place=true", "--set", "summary.map={east={edges=[0.0, 5e3]}, "
+             "north={edges=[-1e3, 1e3, 2e3]}}"]
+    write("cells.toml")
+    said = run("study", "cells.toml", "-o", "cells.h5", "--until", "map_p_over=0.08", *place)
+    with h5py.File("cells.h5") as f:
+        count = f["summary/map_p_over/count"][:]
+        rows = len(f["index"])
+        check(sorted(count) == [0, rows] and 100 < rows < 400, f"{count} of {rows} rows")
+        half = np.nanmax(0.5 * (f["summary/map_p_over/p_over_high"][:] - f["summary/map_p_over/p_over_low"][:])[count > 0])
+    where = f"map_p_over: ± {half:.3g} at the worst (place_east 2500, place_north 0, {rows} realisations), asked for ± 0.08"
+    check(f"{where}; 1 of 2 cells without a realisation" in said, f"{said} for {where}")
+    write("other.toml", source=224.0)
+    said = run("study", "--compare", "cells.toml", "other.toml", "-o", "no.h5", "--until", "map_p_over=0.1", *place, status=2)
+    check("a comparison has no maps" in said, said)
+
+
 def comparisons_go_on_in_rounds():
     write("weak.toml", source=224.0)
     write("loud.toml")
@@ -181,7 +199,8 @@ def comparisons_go_on_in_rounds():
 def main():
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
-        for part in (formulae_are_added_without_another_run, parts_have_them, rules_stop, comparisons_go_on_in_rounds):
+        for part in (formulae_are_added_without_another_run, parts_have_them, rules_stop, cells_of_a_map_stop,
+                     comparisons_go_on_in_rounds):
             part()
         os.chdir("/")
     for fault in faults:
