@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "processing/ping_processor.h"
 #include "sonar/ping/ping.h"
 #include "study/plan/measure_plan.h"
 
@@ -18,8 +19,14 @@ struct ReceiverAnswer {
 };
 struct ReceiverAnswers {
   std::vector<ReceiverAnswer> targets;
-  int false_alarms = 0;  ///< detections that are nobody's
+  int false_alarms = 0;               ///< detections that are nobody's
+  std::vector<Detection> detections;  ///< all of them, sorted by time
+  std::vector<int> owner;             ///< [detections] whose each is, as PingScore tells
 };
+
+/// What an array of the scenario recorded of the ping, as the receiver takes it.
+[[nodiscard]] ArrayRecording array_recording(const Scenario& scenario, const PingRecord& record,
+                                             int array);
 
 /// `asdic process` for one ping of one array, in memory: band, beams, matched filters, detections,
 /// places, and whose they are. Source: docs/theory/processing.md   \throws InputError

@@ -36,7 +36,7 @@ SummariseFingerprint summary_of(const SyntheticStudy& synthetic) {
   };
 }
 
-const SyntheticStudy some{.realisations = 311, .skips = true, .series_every = 10};
+const SyntheticStudy some{.realisations = 311, .skips = true, .series_every = 10, .kept_every = 6};
 
 TEST(SameBits, ForAnyNumberOfThreads) {
   const TemporaryDirectory folder;
