@@ -99,11 +99,8 @@ std::string memory_text(const Pilot& pilot, int threads) {
   text += fmt::format("file       {} a row", byte_count(pilot.file_row));
   if (pilot.kept_row > 0.0)
     text += fmt::format(" and {} that rows keep beside it", byte_count(pilot.kept_row));
-  text += fmt::format(
-      ": {}",
-      byte_count(rows * (pilot.file_row + (std::isfinite(pilot.kept_row) ? pilot.kept_row : 0.0))));
-  if (std::isnan(pilot.kept_row))
-    text += ", and what rows keep beside it, of which not all was met";
+  text += fmt::format(": {}", byte_count(rows * (pilot.file_row + pilot.kept_row)));
+  if (!pilot.kept_met) text += ", and what else rows keep, of which none was met";
   return text + "; a journal of about as much while it runs\n";
 }
 

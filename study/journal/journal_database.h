@@ -51,7 +51,7 @@ struct Journal::Impl {
   [[nodiscard]] Row row_at(const sqlite::Statement& get, int cells) const;
   [[nodiscard]] bool add_series(Row& row) const;
   /// Adds one of its arrays, or all. \return whether they are as they were written
-  [[nodiscard]] bool add_arrays(Row& row, std::string_view name = {}) const;
+  [[nodiscard]] bool add_arrays(Row& row, std::string_view name = "") const;
   void append_array(std::int64_t index, KeptArray array);
   [[noreturn]] void throw_away(std::uint64_t index) const;
   void drop(std::uint64_t index) const;

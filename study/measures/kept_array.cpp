@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "io/processing/table.h"
+#include "sonar/signal/fft.h"
 #include "sonar/signal/power_spectrum.h"
 #include "study/measures/receiver_measure.h"
 
@@ -14,7 +15,6 @@ namespace asdic::detail::study {
 namespace {
 
 constexpr double finest_by_default = 1.0;  // [Hz]
-constexpr double eight_half_over = 4.5;    // lengths of eight segments, each half over the last
 
 std::array<KeptKind, 2> all_kinds() {
   KeptKind spectra{
@@ -51,19 +51,18 @@ std::size_t length_of_segments(const SpectrumPlan& plan, double rate, std::size_
     throw InputError(
         {.where = "measure.spectra.resolution",
          .got = to_text(*plan.resolution) + " Hz of a record of " + to_text(seconds) + " s",
-         .expected = "what a segment within the record can tell apart, " +
-                     to_text(std::ceil(100.0 / seconds) / 100.0) + " Hz or a little more"});
+         .expected = to_text(std::ceil(100.0 / seconds) / 100.0) +
+                     " Hz or a little more, which a segment of all of the record has"});
   }
-  const double step = std::max(finest_by_default, eight_half_over / seconds);
-  const std::size_t length = std::min(segment_length(rate, step), samples / 2 * 2);
-  if (length < 4)
+  std::size_t half = samples / 9;  // of eight segments, each half over the last
+  if (half < 2)
     throw InputError({.where = "measure.spectra",
                       .got = "a record of " + std::to_string(samples) + " samples",
-                      .expected = "four or more"});
-  return length;
+                      .expected = "18 or more"});
+  while (fast_fft_length(half) != half) --half;
+  return std::min(segment_length(rate, finest_by_default), 2 * half);
 }
 
-/// \param row  of a phone
 PowerSpectrum of_phone(const ArrayRecording& received, std::size_t phone, std::size_t length) {
   const std::size_t phones = received.phones.size();
   const auto part = [&](const auto& all) {

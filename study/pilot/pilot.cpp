@@ -57,12 +57,16 @@ class KeptBytes {
       all_[array.name == spectra_kind().name ? 1 : 2].add(
           static_cast<double>((array.head.size() + array.values.size()) * sizeof(double)));
   }
-  /// NaN where none of a kind was met.
+  /// Of the kinds that were met.
   [[nodiscard]] double of_row() const {
     double sum = 0.0;
     for (const Kind& kind : all_)
-      if (kind.every > 0) sum += kind.bytes / kind.rows / static_cast<double>(kind.every);
+      if (kind.rows > 0.0) sum += kind.bytes / kind.rows / static_cast<double>(kind.every);
     return sum;
+  }
+  [[nodiscard]] bool all_met() const {
+    return std::all_of(all_.begin(), all_.end(),
+                       [](const Kind& kind) { return kind.every == 0 || kind.rows > 0.0; });
   }
 
  private:
@@ -196,6 +200,7 @@ Pilot pilot(const Study& study, const PilotOptions& options) {
   const std::vector<Column> every = columns(study);
   made.file_row = 8.0 * static_cast<double>(every.size() + reuse_columns().size()) + 9.0;
   made.kept_row = kept.of_row();
+  made.kept_met = kept.all_met();
   made.drivers = drivers_of(every, rows, costs, options.confidence, made.ordered);
 
   const std::vector<std::uint64_t> few = across_costs(made.rows, changed);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "core/quantities.h"
 #include "io/settings/reader.h"
 #include "sonar/scenario/sampling.h"
 #include "sonar/scenario/transmission.h"
@@ -153,8 +154,7 @@ void read_spectra(TomlTable& measures, MeasurePlan& plan) {
   TomlTable table = measures.table("spectra");
   plan.spectra_every = table.has("every") ? read_every(table, "every") : 1;
   if (table.has("resolution"))
-    plan.spectrum.resolution =
-        table.number("resolution", {.noun = "frequency in Hz", .low = 1e-6, .high = 1e9});
+    plan.spectrum.resolution = table.number("resolution", quantity::frequency);
   plan.spectrum.each_phone = table.choice("phones", {"mean", "each"}, "mean") == "each";
   table.finish();
 }
