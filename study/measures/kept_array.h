@@ -15,11 +15,10 @@ struct ReceiverAnswers;
 
 /// Numbers that a row keeps beside its columns: of one KeptKind.
 struct KeptArray {
-  std::string name;  ///< of its kind
-  std::vector<std::size_t>
-      shape{};                   ///< {lines, numbers of a line}; a kind says which of both varies
-  std::vector<double> head{};    ///< [kind.head] numbers that tell of the whole
-  std::vector<double> values{};  ///< [product of shape] row-major
+  std::string name;                  ///< of its kind
+  std::vector<std::size_t> shape{};  ///< {lines, numbers of a line}
+  std::vector<double> head{};        ///< [kind.head] numbers that tell of the whole
+  std::vector<double> values{};      ///< [product of shape] row-major
 
   bool operator==(const KeptArray&) const = default;
 };

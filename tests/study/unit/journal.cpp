@@ -163,9 +163,14 @@ TEST(Journal, ARowWithoutItsArrayIsThrownAway) {
   const SyntheticStudy synthetic{.skips = true, .series_every = 5, .kept_every = 4};
   const auto path = filled(folder, 40);
   sqlite::Database(path).execute("DELETE FROM kept WHERE idx=8 AND name='spectra'");
+  // … and one whose row does not know of it any more, by the row's checksum.
+  sqlite::Database(path).execute(
+      "DELETE FROM kept WHERE idx=12; UPDATE row SET kept=kept%2 WHERE idx=12");
   const Journal journal(path, synthetic.work().fingerprint);
-  EXPECT_EQ(journal.damaged(), 1U);
-  EXPECT_EQ(journal.done().missing({0, 40}), IndexSet({8, 9}));
+  EXPECT_EQ(journal.damaged(), 2U);
+  IndexSet lost({8, 9});
+  lost.add(IndexRange{12, 13});
+  EXPECT_EQ(journal.done().missing({0, 40}), lost);
 }
 
 // Journals of before there were arrays have no table for them, and checksums of their own kind:
