@@ -84,6 +84,9 @@ int study_info(const std::string& path) {
   if (valid < table.index.size()) print(fmt::format("; {} skipped", table.index.size() - valid));
   if (const auto kept = file.series_index(); !kept.empty())
     print(fmt::format("; {} time series", kept.size()));
+  for (const study::KeptKind& kind : study::kept_kinds())
+    if (const auto kept = file.kept_heads(kind).index; !kept.empty())
+      print(fmt::format("; {} of {}", kind.name, count_of(kept.size(), "row")));
   print(file.stopped_by().empty() ? "\n" : "; stopped by " + file.stopped_by() + "\n");
   print(origin_of(file));
   print(fmt::format("study        identity {}, design {}, seed {}\n", fingerprint.identity,

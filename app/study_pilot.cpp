@@ -97,13 +97,10 @@ std::string memory_text(const Pilot& pilot, int threads) {
   text +=
       fmt::format("\n           and up to {} for the summary at the end\n", byte_count(summary));
   text += fmt::format("file       {} a row", byte_count(pilot.file_row));
-  if (pilot.series_row > 0.0)
-    text += fmt::format(" and {} of samples that are kept", byte_count(pilot.series_row));
-  text += fmt::format(
-      ": {}", byte_count(rows * (pilot.file_row +
-                                 (std::isfinite(pilot.series_row) ? pilot.series_row : 0.0))));
-  if (std::isnan(pilot.series_row))
-    text += ", and the samples that are kept, of which none were met";
+  if (pilot.kept_row > 0.0)
+    text += fmt::format(" and {} that rows keep beside it", byte_count(pilot.kept_row));
+  text += fmt::format(": {}", byte_count(rows * (pilot.file_row + pilot.kept_row)));
+  if (!pilot.kept_met) text += ", and what else rows keep, of which none was met";
   return text + "; a journal of about as much while it runs\n";
 }
 

@@ -64,11 +64,8 @@ void add_place(std::vector<double>& row, const Detection& d, std::size_t side) {
 
 }  // namespace
 
-Table detections_table(const ProcessedRun& run) {
-  Table table;
-  table.columns = {
-      {"ping", "number of the ping", "", Type::int32},
-      {"array", "number of the array", "", Type::int32},
+std::vector<GrowingTable::Column> detection_columns() {
+  std::vector<GrowingTable::Column> columns{
       {"time", "of the leading edge, after the start of the ping", "s"},
       {"doppler_factor", "received over transmitted frequency", ""},
       {"doppler_sigma", "its standard deviation; a sweep's time errs with it along the ridge", ""},
@@ -83,8 +80,34 @@ Table detections_table(const ProcessedRun& run) {
       {"target", "whose echo it is, -1: a false alarm, -2: the transmitter's own sound", "",
        Type::int32},
       {"places", "that fit it: 2 where two sides cannot be resolved", "", Type::int32}};
-  for (const auto& columns : {place_columns("", ""), place_columns("mirror_", ", the other side")})
-    table.columns.insert(table.columns.end(), columns.begin(), columns.end());
+  for (const auto& more : {place_columns("", ""), place_columns("mirror_", ", the other side")})
+    columns.insert(columns.end(), more.begin(), more.end());
+  return columns;
+}
+
+std::vector<double> detection_row(const Detection& d, int owner) {
+  std::vector<double> row{d.time,
+                          d.doppler,
+                          d.doppler_sigma,
+                          d.snr_db,
+                          d.excess_db,
+                          d.level_db,
+                          d.cosine,
+                          bearing_degrees(d.bearing),
+                          degrees(d.elevation),
+                          double(owner),
+                          double(d.locations.size())};
+  add_place(row, d, 0);
+  add_place(row, d, 1);
+  return row;
+}
+
+Table detections_table(const ProcessedRun& run) {
+  Table table;
+  table.columns = {{"ping", "number of the ping", "", Type::int32},
+                   {"array", "number of the array", "", Type::int32}};
+  for (GrowingTable::Column& column : detection_columns())
+    table.columns.push_back(std::move(column));
   if (run.earth.known()) {
     add_earth_columns(table.columns, "", "of where it was struck");
     add_earth_columns(table.columns, "mirror_", "of where it was struck, the other side");
@@ -92,21 +115,10 @@ Table detections_table(const ProcessedRun& run) {
   for (const ProcessedPing& ping : run.pings)
     for (std::size_t i = 0; i < ping.array.result.detections.size(); ++i) {
       const Detection& d = ping.array.result.detections[i];
-      std::vector<double> row{double(d.ping),
-                              double(d.array),
-                              d.time,
-                              d.doppler,
-                              d.doppler_sigma,
-                              d.snr_db,
-                              d.excess_db,
-                              d.level_db,
-                              d.cosine,
-                              bearing_degrees(d.bearing),
-                              degrees(d.elevation),
-                              double(i < ping.score.owner.size() ? ping.score.owner[i] : -1),
-                              double(d.locations.size())};
-      add_place(row, d, 0);
-      add_place(row, d, 1);
+      std::vector<double> row{double(d.ping), double(d.array)};
+      const std::vector<double> numbers =
+          detection_row(d, i < ping.score.owner.size() ? ping.score.owner[i] : -1);
+      row.insert(row.end(), numbers.begin(), numbers.end());
       if (run.earth.known())
         for (const std::size_t side : {0U, 1U}) add_earth_place(row, run.earth, d, side);
       table.rows.push_back(std::move(row));

@@ -136,7 +136,7 @@ std::vector<Session> Journal::sessions() const {
   return all;
 }
 
-void Journal::rows(IndexRange range, bool pressure, const std::function<void(Row&&)>& take) const {
+void Journal::rows(IndexRange range, bool with_kept, const std::function<void(Row&&)>& take) const {
   const std::lock_guard lock(impl_->mutex);
   sqlite::Statement get(impl_->database,
                         "SELECT r.idx,valid,fault,vals,kept,r.checksum,counts FROM row r"
@@ -145,15 +145,14 @@ void Journal::rows(IndexRange range, bool pressure, const std::function<void(Row
   get.bind(0, static_cast<std::int64_t>(range.first)).bind(1, static_cast<std::int64_t>(range.end));
   while (get.step()) {
     Row row = impl_->row_at(get, 6);
-    const bool kept = get.integer(4) != 0;
-    const bool good =
-        get.text(5) == checksum(row, kept) && (!kept || !pressure || impl_->add_series(row));
+    const std::int64_t kept = get.integer(4);
+    const bool good = get.text(5) == checksum(row, kept) &&
+                      (!with_kept || ((kept % 2 == 0 || impl_->add_series(row)) &&
+                                      (kept < 2 || impl_->add_arrays(row))));
     if (!good) {
       const std::uint64_t index = row.index;
       get.reset();
-      impl_->drop(index);
-      throw RunError(path().string() + ": realisation " + std::to_string(index) +
-                     " was damaged and has been thrown away; the same command makes it again");
+      impl_->throw_away(index);
     }
     take(std::move(row));
   }
@@ -172,6 +171,42 @@ void Journal::series(IndexRange range, const std::function<void(Row&&)>& take) c
     row.timing = timing_of(get.text(2));
     take(std::move(row));
   }
+}
+
+std::vector<float> Journal::pressure(std::uint64_t index) const {
+  const std::lock_guard lock(impl_->mutex);
+  Row row{.index = index};
+  if (!impl_->add_series(row)) impl_->throw_away(index);
+  return std::move(row.pressure);
+}
+
+void Journal::arrays(IndexRange range, std::string_view name,
+                     const std::function<void(std::uint64_t, KeptArray&&)>& take) const {
+  const std::lock_guard lock(impl_->mutex);
+  const std::string wanted(name);
+  sqlite::Statement get(
+      impl_->database,
+      "SELECT idx,shape,head FROM kept WHERE idx>=? AND idx<? AND name=? ORDER BY idx");
+  get.bind(0, static_cast<std::int64_t>(range.first))
+      .bind(1, static_cast<std::int64_t>(range.end))
+      .bind(2, wanted);
+  while (get.step()) {
+    const auto index = static_cast<std::uint64_t>(get.integer(0));
+    KeptArray array{
+        .name = wanted, .shape = shape_of(get.text(1)), .head = numbers_of(get.text(2))};
+    if (array.shape.size() != 2) {
+      get.reset();
+      impl_->throw_away(index);
+    }
+    take(index, std::move(array));
+  }
+}
+
+KeptArray Journal::array(std::uint64_t index, std::string_view name) const {
+  const std::lock_guard lock(impl_->mutex);
+  Row row{.index = index};
+  if (!impl_->add_arrays(row, name)) impl_->throw_away(index);
+  return std::move(row.kept.front());
 }
 
 // Where journals lie beside a study's file.

@@ -51,11 +51,18 @@ class Journal {
   [[nodiscard]] std::vector<Session> sessions() const;
 
   /// The rows of a range in the order of their indices.
-  /// \param pressure  with the time series
+  /// \param kept  with the time series and arrays that they keep
   /// \throws RunError if a row has been damaged since the journal was opened
-  void rows(IndexRange range, bool pressure, const std::function<void(Row&&)>& take) const;
+  void rows(IndexRange range, bool kept, const std::function<void(Row&&)>& take) const;
   /// Which of them have a time series, its shape and timing: rows without values or pressure.
   void series(IndexRange range, const std::function<void(Row&&)>& take) const;
+  /// One of them. \throws RunError as rows()
+  [[nodiscard]] std::vector<float> pressure(std::uint64_t index) const;
+  /// Which of them keep an array of a name, with its shape and head, but without values.
+  void arrays(IndexRange range, std::string_view name,
+              const std::function<void(std::uint64_t index, KeptArray&&)>& take) const;
+  /// One of them. \throws RunError as rows()
+  [[nodiscard]] KeptArray array(std::uint64_t index, std::string_view name) const;
 
  private:
   struct Impl;

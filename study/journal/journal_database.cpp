@@ -21,7 +21,9 @@ constexpr const char* schema =
     " vals BLOB, kept INTEGER, checksum TEXT);"
     "CREATE TABLE IF NOT EXISTS series(idx INTEGER PRIMARY KEY, shape TEXT, timing TEXT,"
     " pressure BLOB, checksum TEXT);"
-    "CREATE TABLE IF NOT EXISTS cells(idx INTEGER PRIMARY KEY, counts BLOB, checksum TEXT);";
+    "CREATE TABLE IF NOT EXISTS cells(idx INTEGER PRIMARY KEY, counts BLOB, checksum TEXT);"
+    "CREATE TABLE IF NOT EXISTS kept(idx INTEGER, name TEXT, shape TEXT, head TEXT, vals BLOB,"
+    " checksum TEXT, PRIMARY KEY(idx,name));";
 
 }  // namespace
 
@@ -69,14 +71,17 @@ void Journal::Impl::check_rows() {
   {
     sqlite::Statement get(
         database,
-        "SELECT r.idx,r.valid,r.fault,r.vals,r.kept,r.checksum,COALESCE(s.idx,-1),c.counts"
+        "SELECT r.idx,r.valid,r.fault,r.vals,r.kept,r.checksum,COALESCE(s.idx,-1),c.counts,"
+        "(SELECT COUNT(*) FROM kept k WHERE k.idx=r.idx)"
         " FROM row r LEFT JOIN series s ON s.idx=r.idx LEFT JOIN cells c ON c.idx=r.idx"
         " ORDER BY r.idx");
     while (get.step()) {
       const Row row = row_at(get, 7);
-      const bool kept = get.integer(4) != 0;
-      if (get.text(5) == checksum(row, kept) && (!kept || get.integer(6) == get.integer(0)) &&
-          get.integer(0) >= 0 && row.values.size() == width)
+      const std::int64_t kept = get.integer(4);
+      const bool all_there =
+          (kept % 2 == 0 || get.integer(6) == get.integer(0)) && get.integer(8) == kept / 2;
+      if (get.text(5) == checksum(row, kept) && all_there && get.integer(0) >= 0 &&
+          row.values.size() == width)
         done.add(row.index);
       else
         bad.push_back(row.index);
@@ -118,10 +123,37 @@ bool Journal::Impl::add_series(Row& row) const {
          checksum_of_series(row.index, shape, timing, get.blob(2)) == get.text(3);
 }
 
+bool Journal::Impl::add_arrays(Row& row, std::string_view name) const {
+  sqlite::Statement get(database,
+                        "SELECT name,shape,head,vals,checksum FROM kept WHERE idx=?1"
+                        " AND (?2='' OR name=?2) ORDER BY rowid");  // as they were appended
+  get.bind(0, static_cast<std::int64_t>(row.index)).bind(1, name);
+  while (get.step()) {
+    const std::string shape = get.text(1), head = get.text(2);
+    KeptArray array{.name = get.text(0),
+                    .shape = shape_of(shape),
+                    .head = numbers_of(head),
+                    .values = vector_of<double>(get.blob(3))};
+    double numbers = array.shape.empty() ? 0.0 : 1.0;
+    for (const std::size_t n : array.shape) numbers *= static_cast<double>(n);
+    if (numbers != static_cast<double>(array.values.size()) ||
+        checksum_of_array(row.index, array.name, shape, head, get.blob(3)) != get.text(4))
+      return false;
+    row.kept.push_back(std::move(array));
+  }
+  return name.empty() || !row.kept.empty();
+}
+
 void Journal::Impl::drop(std::uint64_t index) const {
   for (const char* sql : {"DELETE FROM row WHERE idx=?", "DELETE FROM series WHERE idx=?",
-                          "DELETE FROM cells WHERE idx=?"})
+                          "DELETE FROM cells WHERE idx=?", "DELETE FROM kept WHERE idx=?"})
     sqlite::Statement(database, sql).bind(0, static_cast<std::int64_t>(index)).run();
+}
+
+void Journal::Impl::throw_away(std::uint64_t index) const {
+  drop(index);
+  throw RunError(database.path().string() + ": realisation " + std::to_string(index) +
+                 " was damaged and has been thrown away; the same command makes it again");
 }
 
 void Journal::Impl::start() {
@@ -129,6 +161,7 @@ void Journal::Impl::start() {
   insert_row.emplace(database, "REPLACE INTO row VALUES(?,?,?,?,?,?)");
   insert_series.emplace(database, "REPLACE INTO series VALUES(?,?,?,?,?)");
   insert_cells.emplace(database, "REPLACE INTO cells VALUES(?,?,NULL)");
+  insert_array.emplace(database, "REPLACE INTO kept VALUES(?,?,?,?,?,?)");
 }
 
 /// Only a journal that rows come into needs somebody who commits them: thousands may be open.
@@ -167,17 +200,17 @@ void Journal::Impl::append(const Row& row) {
             .reuse = {},
             .cells = row.cells};
   one_kind_of_nan(clean.values);
-  const bool kept = !row.pressure.empty();
+  const std::int64_t kept = kept_number(row);
   const auto index = static_cast<std::int64_t>(row.index);
   const std::string sum = checksum(clean, kept);
   insert_row->bind(0, index)
       .bind(1, std::int64_t{row.valid})
       .bind(2, row.fault)
       .bind(3, bytes_of(clean.values))
-      .bind(4, std::int64_t{kept})
+      .bind(4, kept)
       .bind(5, sum)
       .run();
-  if (kept) {
+  if (!row.pressure.empty()) {
     const std::string shape = shape_text(row.pressure_shape);
     const std::string timing = timing_text(row.timing);
     const std::string series_sum =
@@ -189,10 +222,26 @@ void Journal::Impl::append(const Row& row) {
         .bind(4, series_sum)
         .run();
   }
+  for (const KeptArray& array : row.kept) append_array(index, array);
   if (!row.cells.empty())
     insert_cells->bind(0, index).bind(1, std::as_bytes(std::span(clean.cells))).run();
   done.add(row.index);
   if (session) ++session->rows;
+}
+
+void Journal::Impl::append_array(std::int64_t index, KeptArray array) {
+  one_kind_of_nan(array.head);
+  one_kind_of_nan(array.values);
+  const std::string shape = shape_text(array.shape), head = numbers_text(array.head);
+  const std::string sum = checksum_of_array(static_cast<std::uint64_t>(index), array.name, shape,
+                                            head, bytes_of(array.values));
+  insert_array->bind(0, index)
+      .bind(1, array.name)
+      .bind(2, shape)
+      .bind(3, head)
+      .bind(4, bytes_of(array.values))
+      .bind(5, sum)
+      .run();
 }
 
 void Journal::Impl::commit() {
@@ -220,6 +269,7 @@ void Journal::Impl::close() {
   insert_row.reset();
   insert_series.reset();
   insert_cells.reset();
+  insert_array.reset();
   database.close();
 }
 

@@ -50,6 +50,10 @@ struct Journal::Impl {
   /// \param cells  which column has them
   [[nodiscard]] Row row_at(const sqlite::Statement& get, int cells) const;
   [[nodiscard]] bool add_series(Row& row) const;
+  /// Adds one of its arrays, or all. \return whether they are as they were written
+  [[nodiscard]] bool add_arrays(Row& row, std::string_view name = "") const;
+  void append_array(std::int64_t index, KeptArray array);
+  [[noreturn]] void throw_away(std::uint64_t index) const;
   void drop(std::uint64_t index) const;
   [[nodiscard]] std::int64_t next_session() const {
     sqlite::Statement next(database, "SELECT COALESCE(MAX(id),0)+1 FROM session");
@@ -62,7 +66,7 @@ struct Journal::Impl {
   std::uint64_t damaged = 0;
 
   mutable std::mutex mutex;  // of everything below and of the connection
-  std::optional<sqlite::Statement> insert_row, insert_series, insert_cells;
+  std::optional<sqlite::Statement> insert_row, insert_series, insert_cells, insert_array;
   bool pending = false;  // a transaction is open
   std::exception_ptr fault;
   std::optional<Session> session;

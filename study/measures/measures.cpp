@@ -193,7 +193,7 @@ std::vector<Column> measure_columns(const Study& study, const Scenario& scenario
 
 Measured measure(const Study& study, const PingSimulator& simulator,
                  std::span<const AnyMeasure> measures,
-                 const std::shared_ptr<SharedPropagation>& shared, RowCost* cost) {
+                 const std::shared_ptr<SharedPropagation>& shared, RowCost* cost, bool detections) {
   const MeasurePlan& plan = study.measure;
   CostClock clock(cost);
   Measured made{.record = received(simulator, plan)};
@@ -202,18 +202,17 @@ Measured measure(const Study& study, const PingSimulator& simulator,
   clock.lap(Stage::draws);
   if (plan.cells) made.cells = counted_cells(simulator, made.record, plan, expected);
   clock.lap(Stage::cells);
-  ReceiverAnswers receiver;
-  if (plan.uses_receiver())
-    receiver = receiver_answers(simulator, made.record, plan.receiver, plan.array);
+  if (plan.uses_receiver() || detections)
+    made.receiver = receiver_answers(simulator, made.record, plan.receiver, plan.array);
   PingRun run;
-  if (plan.run) run = run_of(simulator, plan, made.record, expected, receiver, shared);
+  if (plan.run) run = run_of(simulator, plan, made.record, expected, made.receiver, shared);
   Collector collector(made.values);
   walk(measures,
        {.plan = study.measure,
         .scenario = simulator.scenario(),
         .simulator = &simulator,
         .record = &made.record,
-        .receiver = std::move(receiver),
+        .receiver = made.receiver,
         .expected = std::move(expected),
         .run = std::move(run)},
        collector);

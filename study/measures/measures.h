@@ -39,13 +39,15 @@ struct Measured {
   std::vector<double> values;         ///< [measure columns]
   PingRecord record;                  ///< with samples, where the plan needs any
   std::vector<std::uint8_t> cells{};  ///< packed_counts(), where cells are counted
+  ReceiverAnswers receiver{};         ///< where it is used, or asked for
 };
 /// \param simulator  of the realisation's scenario   \param shared  what draws of its background
 /// have in common with others   \param cost  gets what each stage took, where somebody asks
+/// \param detections  whether what the receiver detects is asked for, which it then is once
 /// \throws InputError
 [[nodiscard]] Measured measure(const Study& study, const PingSimulator& simulator,
                                std::span<const AnyMeasure> measures = all_measures,
                                const std::shared_ptr<SharedPropagation>& shared = nullptr,
-                               RowCost* cost = nullptr);
+                               RowCost* cost = nullptr, bool detections = false);
 
 }  // namespace asdic::detail::study

@@ -24,10 +24,6 @@ std::uint64_t seed_of(const Study& study, std::uint64_t chance) {
   return (static_cast<std::uint64_t>(words[0]) << 32) | words[1];
 }
 
-bool keeps_series(const MeasurePlan& plan, std::uint64_t index) {
-  return plan.series_every > 0 && index % plan.series_every == 0;
-}
-
 /// \return [reuse_columns()]
 std::vector<double> reuse_of(const Reuse& reuse) {
   return {reuse.ocean ? 1.0 : 0.0, static_cast<double>(reuse.legs_searched),
@@ -49,6 +45,16 @@ void keep_series(const PingRecord& record, const Study& study, const Scenario& s
   if (r.is_complex()) row.pressure_shape.push_back(2);
   row.timing = {
       .sample_rate = r.sample_rate, .start = r.start, .carrier = r.carrier, .epoch = r.epoch};
+}
+
+/// What else the plan keeps of this index.
+void keep_arrays(const Measured& measured, const Study& study, const Scenario& scenario, Row& row) {
+  const MeasurePlan& plan = study.measure;
+  if (keeps(plan.spectra_every, row.index))
+    row.kept.push_back(
+        kept_spectrum(array_recording(scenario, measured.record, plan.array), plan.spectrum));
+  if (keeps(plan.detections_every, row.index))
+    row.kept.push_back(kept_detections(measured.receiver));
 }
 
 }  // namespace
@@ -153,7 +159,8 @@ Row Realiser::Impl::make(std::uint64_t index, double bytes, RowCost* cost) {
     PingSimulator simulator(std::move(scenario), shared, budget.share(bytes, "a row's share"));
     if (!study.measure.run) simulator.receives_one_ping();
     clock.lap(Stage::ocean);
-    Measured measured = measure(study, simulator, all_measures, shared, cost);
+    Measured measured = measure(study, simulator, all_measures, shared, cost,
+                                keeps(study.measure.detections_every, index));
     static_cast<void>(clock.lap());
     row.reuse = reuse_of(measured.record.reuse);
     row.values.insert(row.values.end(), measured.values.begin(), measured.values.end());
@@ -163,8 +170,9 @@ Row Realiser::Impl::make(std::uint64_t index, double bytes, RowCost* cost) {
     if (study.rare.event)
       row.values.push_back(study.rare.event->of(study.rare.event->excess_of(row.values)));
     clock.lap(Stage::measures);
-    if (keeps_series(study.measure, index))
+    if (keeps(study.measure.series_every, index))
       keep_series(measured.record, study, simulator.scenario(), row);
+    keep_arrays(measured, study, simulator.scenario(), row);
   } catch (const MemoryError& error) {
     if (bytes < memory.total()) throw;
     fails(error);

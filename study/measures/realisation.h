@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "study/measures/cell_counts.h"
+#include "study/measures/kept_array.h"
 #include "study/measures/row_cost.h"
 #include "study/plan/study.h"
 
@@ -47,6 +48,7 @@ struct Row {
   SeriesTiming timing{};              ///< of the time series
   std::vector<double> reuse;          ///< [reuse_columns()] what was known before it was made
   std::vector<std::uint8_t> cells{};  ///< packed_counts() of those without an echo, if counted
+  std::vector<KeptArray> kept{};      ///< spectra, detections, in the order of kept_kinds()
 };
 
 /// The column with ln of the weights of rows that are drawn from a proposal: nominal density over

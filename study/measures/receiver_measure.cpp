@@ -9,9 +9,8 @@
 #include "study/plan/no_value.h"
 
 namespace asdic::detail::study {
-namespace {
 
-ArrayRecording recording_of(const Scenario& scenario, const PingRecord& record, int array) {
+ArrayRecording array_recording(const Scenario& scenario, const PingRecord& record, int array) {
   const Recording& r = record.recording;
   const std::size_t first = first_channel(scenario, array);
   const std::size_t phones = scenario.arrays[static_cast<std::size_t>(array)].phones.size();
@@ -32,6 +31,8 @@ ArrayRecording recording_of(const Scenario& scenario, const PingRecord& record, 
     made.envelope.emplace_back(samples[2 * i], samples[2 * i + 1]);
   return made;
 }
+
+namespace {
 
 /// What is sent, as a file would hold it.
 std::vector<Replica> replicas_of(const PingSimulator& simulator, const Recording& recording) {
@@ -61,7 +62,7 @@ ReceiverAnswers receiver_answers(const PingSimulator& simulator, const PingRecor
   if (chosen.detector.first_time.value_or(0.0) <= 0.0)  // not while it transmits
     chosen.detector.first_time = recording.start + simulator.pulse(record.transmitter).duration();
   const PingProcessor processor(scenario, replicas_of(simulator, recording), chosen);
-  const ProcessedArray processed = processor.process(recording_of(scenario, record, array));
+  ProcessedArray processed = processor.process(array_recording(scenario, record, array));
   const std::vector<TrueEcho> echoes = true_echoes(record, array);
   const double end =
       recording.start + static_cast<double>(recording.samples) / recording.sample_rate;
@@ -70,7 +71,8 @@ ReceiverAnswers receiver_answers(const PingSimulator& simulator, const PingRecor
                                      processed.shape, processed.places.array,
                                      processor.resolution(processed), *chosen.detector.first_time,
                                      std::min(chosen.detector.last_time.value_or(end), end));
-  ReceiverAnswers answers{.false_alarms = score.false_alarms};
+  ReceiverAnswers answers;
+  answers.false_alarms = score.false_alarms;
   for (const TargetScore& target : score.targets) {
     ReceiverAnswer answer{.hit = target.hit,
                           .snr_db = no_value,
@@ -89,6 +91,7 @@ ReceiverAnswers receiver_answers(const PingSimulator& simulator, const PingRecor
     answers.targets.push_back(answer);
   }
   answers.places = tracked_ping(processor, processed, record.start_time, std::move(score.owner));
+  answers.detections = std::move(processed.result.detections);
   return answers;
 }
 

@@ -19,9 +19,14 @@ struct ReceiverAnswer {
 };
 struct ReceiverAnswers {
   std::vector<ReceiverAnswer> targets;
-  int false_alarms = 0;  ///< detections that are nobody's
-  TrackedPing places{};  ///< of all detections, for a tracker
+  int false_alarms = 0;               ///< detections that are nobody's
+  std::vector<Detection> detections;  ///< all of them, sorted by time
+  TrackedPing places{};               ///< of all of them, and whose they are, for a tracker
 };
+
+/// What an array of the scenario recorded of the ping, as the receiver takes it.
+[[nodiscard]] ArrayRecording array_recording(const Scenario& scenario, const PingRecord& record,
+                                             int array);
 
 /// `asdic process` for one ping of one array, in memory: band, beams, matched filters, detections,
 /// places, and whose they are. Source: docs/theory/processing.md   \throws InputError

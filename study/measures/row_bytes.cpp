@@ -20,9 +20,16 @@ std::string checksum(std::string_view text) { return sha256(text).substr(0, 16);
 
 }  // namespace
 
-std::string checksum(const Row& row, bool kept) {
-  std::string text = std::to_string(row.index) + (row.valid ? "v" : "-") + (kept ? "k" : "-") +
-                     std::to_string(row.fault.size()) + row.fault;
+std::int64_t kept_number(const Row& row) noexcept {
+  return (row.pressure.empty() ? 0 : 1) + 2 * static_cast<std::int64_t>(row.kept.size());
+}
+
+std::string checksum(const Row& row, std::int64_t kept) {
+  // Of rows without arrays as journals have always had it.
+  const std::string arrays = kept < 2 ? "" : std::to_string(kept / 2) + "a";
+  std::string text = std::to_string(row.index) + (row.valid ? "v" : "-") +
+                     (kept % 2 != 0 ? "k" : "-") + arrays + std::to_string(row.fault.size()) +
+                     row.fault;
   text += view(bytes_of(row.values));
   text += view(bytes_of(row.cells));
   return checksum(text);
@@ -49,9 +56,9 @@ std::vector<std::size_t> shape_of(const std::string& text) {
   return shape;
 }
 
-std::string timing_text(const SeriesTiming& timing) {
+std::string numbers_text(std::span<const double> numbers) {
   std::string text;
-  for (const double x : {timing.sample_rate, timing.start, timing.carrier, timing.epoch}) {
+  for (const double x : numbers) {
     std::array<char, 40> digits{};
     static_cast<void>(std::snprintf(digits.data(), digits.size(), "%a ", x));  // no digit is lost
     text += digits.data();
@@ -59,20 +66,37 @@ std::string timing_text(const SeriesTiming& timing) {
   return text;
 }
 
-SeriesTiming timing_of(const std::string& text) {
-  std::array<double, 4> x{};
-  const char* at = text.c_str();
-  for (double& value : x) {
+std::vector<double> numbers_of(const std::string& text) {
+  std::vector<double> numbers;
+  for (const char* at = text.c_str(); *at != '\0';) {
     char* end = nullptr;
-    value = std::strtod(at, &end);
-    at = end;
+    numbers.push_back(std::strtod(at, &end));
+    if (end == at) break;
+    at = *end == ' ' ? end + 1 : end;
   }
+  return numbers;
+}
+
+std::string timing_text(const SeriesTiming& timing) {
+  return numbers_text(std::array{timing.sample_rate, timing.start, timing.carrier, timing.epoch});
+}
+
+SeriesTiming timing_of(const std::string& text) {
+  std::vector<double> x = numbers_of(text);
+  x.resize(4, 0.0);
   return {.sample_rate = x[0], .start = x[1], .carrier = x[2], .epoch = x[3]};
 }
 
 std::string checksum_of_series(std::uint64_t index, const std::string& shape,
                                const std::string& timing, std::span<const std::byte> pressure) {
   return checksum(std::to_string(index) + ":" + shape + ":" + timing + sha256(view(pressure)));
+}
+
+std::string checksum_of_array(std::uint64_t index, const std::string& name,
+                              const std::string& shape, const std::string& head,
+                              std::span<const std::byte> values) {
+  return checksum(std::to_string(index) + ":" + name + ":" + shape + ":" + head +
+                  sha256(view(values)));
 }
 
 void one_kind_of_nan(std::vector<double>& values) {

@@ -23,8 +23,14 @@ template <class T>
   return values;
 }
 
-/// Of a row without its time series. \param kept  whether it has one
-[[nodiscard]] std::string checksum(const Row& row, bool kept);
+/// How many things a row keeps beside its columns: 1 for a time series, 2 for each of its arrays.
+[[nodiscard]] std::int64_t kept_number(const Row& row) noexcept;
+/// Of a row without what it keeps. \param kept  the kept_number() of it
+[[nodiscard]] std::string checksum(const Row& row, std::int64_t kept);
+/// Of one of its arrays. \param shape, head  as shape_text() and numbers_text() write them
+[[nodiscard]] std::string checksum_of_array(std::uint64_t index, const std::string& name,
+                                            const std::string& shape, const std::string& head,
+                                            std::span<const std::byte> values);
 /// Of sums of cells.
 [[nodiscard]] std::string checksum_of_cells(const std::vector<std::uint8_t>& bytes);
 /// Of the time series alone. \param shape, timing  as shape_text() and timing_text() write them
@@ -35,7 +41,10 @@ template <class T>
 /// Numbers with a blank behind each.
 [[nodiscard]] std::string shape_text(const std::vector<std::size_t>& shape);
 [[nodiscard]] std::vector<std::size_t> shape_of(const std::string& text);
-/// Its four numbers, exactly, with a blank behind each.
+/// Exactly, with a blank behind each.
+[[nodiscard]] std::string numbers_text(std::span<const double> numbers);
+[[nodiscard]] std::vector<double> numbers_of(const std::string& text);
+/// The same of its four numbers.
 [[nodiscard]] std::string timing_text(const SeriesTiming& timing);
 [[nodiscard]] SeriesTiming timing_of(const std::string& text);
 

@@ -54,6 +54,7 @@ void Worker::work_on(const Realise& realise) {
         [this](Row&& row) {
           journal_.append(row);
           row.pressure = {};
+          row.kept = {};
           const std::lock_guard lock(mutex_);
           rows_.push_back(std::move(row));
           return true;

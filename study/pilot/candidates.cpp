@@ -52,6 +52,10 @@ void of_measures(const MeasurePlan& plan, std::vector<Candidate>& to) {
                   "false alarms by every cell: one cell a row is left to count them"});
   if (plan.series_every > 0)
     to.push_back({{"measure.time_series=\"none\""}, "the samples that are kept"});
+  if (plan.spectra_every > 0)
+    to.push_back({{"measure.spectra=\"none\""}, "the spectra that are kept"});
+  if (plan.detections_every > 0)
+    to.push_back({{"measure.detections=\"none\""}, "the detections that are kept"});
   if (!plan.uses_matched_filter()) return;
   const MatchedFilterPlan& filter = plan.matched_filter;
   if (filter.background == MatchedFilterPlan::Background::expected) {

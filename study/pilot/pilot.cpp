@@ -3,6 +3,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/error.h"
@@ -39,6 +40,45 @@ class Tries {
  private:
   Realiser realiser_;
   const PilotOptions& options_;
+};
+
+/// What some rows keep beside their columns, on the average over all [bytes].
+class KeptBytes {
+ public:
+  explicit KeptBytes(const MeasurePlan& plan)
+      : all_{{{.every = plan.series_every},
+              {.every = plan.spectra_every},
+              {.every = plan.detections_every}}} {}
+
+  void add(const Row& row) {
+    if (!row.pressure.empty())
+      all_[0].add(static_cast<double>(row.pressure.size() * sizeof(float)));
+    for (const KeptArray& array : row.kept)
+      all_[array.name == spectra_kind().name ? 1 : 2].add(
+          static_cast<double>((array.head.size() + array.values.size()) * sizeof(double)));
+  }
+  /// Of the kinds that were met.
+  [[nodiscard]] double of_row() const {
+    double sum = 0.0;
+    for (const Kind& kind : all_)
+      if (kind.rows > 0.0) sum += kind.bytes / kind.rows / static_cast<double>(kind.every);
+    return sum;
+  }
+  [[nodiscard]] bool all_met() const {
+    return std::all_of(all_.begin(), all_.end(),
+                       [](const Kind& kind) { return kind.every == 0 || kind.rows > 0.0; });
+  }
+
+ private:
+  struct Kind {
+    std::uint64_t every = 0;
+    double rows = 0.0, bytes = 0.0;
+    void add(double more) {
+      ++rows;
+      bytes += more;
+    }
+  };
+  std::array<Kind, 3> all_;
 };
 
 /// Inputs that go with the cost: by ranks, where they are told from none.
@@ -129,15 +169,15 @@ Pilot pilot(const Study& study, const PilotOptions& options) {
   step(1);
   const Tries as_it_is(study, options);
   made.base_memory = resident_bytes();
-  std::size_t kept = 0;
+  KeptBytes kept(study.measure);
   for (const std::uint64_t index : indices) {
     PilotRow row{.index = index};
     Row values;
     row.memory = taken_by([&] { values = as_it_is.make(index, row.cost); });
     row.valid = values.valid;
-    if (!values.pressure.empty()) ++kept;
-    made.series_row += static_cast<double>(values.pressure.size() * sizeof(float));
+    kept.add(values);
     values.pressure = {};
+    values.kept = {};
     values.cells = {};
     rows.push_back(std::move(values));
     made.rows.push_back(row);
@@ -159,8 +199,8 @@ Pilot pilot(const Study& study, const PilotOptions& options) {
   made.budget = budget_of(study.scenario, MemoryBudget()).bytes();
   const std::vector<Column> every = columns(study);
   made.file_row = 8.0 * static_cast<double>(every.size() + reuse_columns().size()) + 9.0;
-  if (study.measure.series_every > 0)
-    made.series_row /= static_cast<double>(kept) * static_cast<double>(study.measure.series_every);
+  made.kept_row = kept.of_row();
+  made.kept_met = kept.all_met();
   made.drivers = drivers_of(every, rows, costs, options.confidence, made.ordered);
 
   const std::vector<std::uint64_t> few = across_costs(made.rows, changed);

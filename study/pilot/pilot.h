@@ -56,8 +56,8 @@ struct Pilot {
   double row_memory = 0.0, base_memory = 0.0;  ///< the most of a row; beside the rows [bytes]
   double budget = 0.0;                         ///< of all rows at a time (run.memory) [bytes]
   double file_row = 0.0;  ///< bytes of the result for a row, beside kept samples' own
-  double series_row =
-      0.0;  ///< of kept samples, on the average; NaN: no row that was tried keeps any
+  double kept_row = 0.0;  ///< of samples, spectra, detections that are kept, on the average …
+  bool kept_met = true;   ///< … but for those of which no row that was tried keeps any
 };
 
 /// Makes some rows, one at a time, each by itself; nothing is written.

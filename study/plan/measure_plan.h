@@ -88,6 +88,19 @@ struct OwnMeasure {
       of{};
 };
 
+/// How the spectra that are kept are made of what the array receives.
+struct SpectrumPlan {
+  std::optional<double> resolution;  ///< step of the frequencies at most [Hz]; none: the record's
+  bool each_phone = false;           ///< a spectrum for each; else the mean of their powers
+
+  bool operator==(const SpectrumPlan&) const = default;
+};
+
+/// Whether something that is kept of every k-th index is kept of this one. \param every  k; 0: none
+[[nodiscard]] constexpr bool keeps(std::uint64_t every, std::uint64_t index) noexcept {
+  return every > 0 && index % every == 0;
+}
+
 /// What is measured in every realisation.
 struct MeasurePlan {
   int ping = 1;                      ///< of the scenario, counted from 1
@@ -98,25 +111,33 @@ struct MeasurePlan {
   std::optional<DetectionPlan> detection;
   std::optional<PingRunPlan> run;  ///< of pings, each with a detection
   std::optional<CellPlan> cells;   ///< of the matched filter
-  ProcessingSettings receiver;     ///< of detection by = "receiver", localisation
+  ProcessingSettings receiver;     ///< of detection by = "receiver", localisation, detections
   std::vector<OwnMeasure> own;     ///< after all others
   std::uint64_t series_every = 0;  ///< the time series of every k-th index; 0: none
+  std::uint64_t spectra_every = 0;
+  SpectrumPlan spectrum;
+  std::uint64_t detections_every = 0;  ///< what the receiver detects
 
   [[nodiscard]] bool wants(std::string_view measure) const {
     return std::find(wanted.begin(), wanted.end(), measure) != wanted.end();
   }
   /// Whether there is anything that needs samples, and not levels alone.
   [[nodiscard]] bool needs_samples() const noexcept {
-    return needs.samples || uses_matched_filter() || uses_receiver() || series_every > 0 ||
+    return needs.samples || uses_matched_filter() || uses_receiver() || keeps_any() ||
            own_takes_samples();
   }
   [[nodiscard]] bool own_takes_samples() const noexcept {
     return std::any_of(own.begin(), own.end(), [](const OwnMeasure& one) { return one.samples; });
   }
+  /// Whether some rows keep more than their columns.
+  [[nodiscard]] bool keeps_any() const noexcept {
+    return series_every > 0 || spectra_every > 0 || detections_every > 0;
+  }
   /// Of a cell, that thresholds are for.
   [[nodiscard]] double false_alarm_probability() const noexcept {
     return detection ? detection->false_alarm_probability : DetectionPlan().false_alarm_probability;
   }
+  /// In every row: has columns of its answers.
   [[nodiscard]] bool uses_receiver() const noexcept {
     return needs.receiver || (detection && detection->by == DetectionPlan::By::receiver);
   }
@@ -126,8 +147,8 @@ struct MeasurePlan {
   }
   /// Whether of the samples only those count that a matched filter looks at.
   [[nodiscard]] bool filter_alone() const noexcept {
-    return uses_matched_filter() && !cells && !uses_receiver() && !needs.samples &&
-           series_every == 0 && !own_takes_samples();
+    return uses_matched_filter() && !cells && !uses_receiver() && !needs.samples && !keeps_any() &&
+           !own_takes_samples();
   }
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "core/quantities.h"
 #include "io/settings/reader.h"
 #include "sonar/scenario/sampling.h"
 #include "sonar/scenario/transmission.h"
@@ -155,11 +156,24 @@ void read_measures(TomlTable& table, MeasurePlan& plan) {
 }
 
 /// "none", "all", or k: of every k-th realisation.
-std::uint64_t read_series(TomlTable& table) {
-  if (!table.has("time_series")) return 0;
-  if (table.is_text("time_series"))
-    return table.choice("time_series", {"none", "all"}) == "all" ? 1 : 0;
-  return static_cast<std::uint64_t>(table.integer("time_series", 1, 1'000'000'000));
+std::uint64_t read_every(TomlTable& table, const std::string& key) {
+  if (!table.has(key)) return 0;
+  if (table.is_text(key)) return table.choice(key, {"none", "all"}) == "all" ? 1 : 0;
+  return static_cast<std::uint64_t>(table.integer(key, 1, 1'000'000'000));
+}
+
+/// The same, or a table: how they are made, too.
+void read_spectra(TomlTable& measures, MeasurePlan& plan) {
+  if (!measures.is_table("spectra")) {
+    plan.spectra_every = read_every(measures, "spectra");
+    return;
+  }
+  TomlTable table = measures.table("spectra");
+  plan.spectra_every = table.has("every") ? read_every(table, "every") : 1;
+  if (table.has("resolution"))
+    plan.spectrum.resolution = table.number("resolution", quantity::frequency);
+  plan.spectrum.each_phone = table.choice("phones", {"mean", "each"}, "mean") == "each";
+  table.finish();
 }
 
 }  // namespace
@@ -180,7 +194,9 @@ MeasurePlan read_measure(TomlTable table, const Scenario& scenario) {
       throw table.fault("pings", "a detection with them, which is looked for in each");
     plan.run = read_run(table, *plan.detection, static_cast<int>(pings));
   }
-  plan.series_every = read_series(table);
+  plan.series_every = read_every(table, "time_series");
+  read_spectra(table, plan);
+  plan.detections_every = read_every(table, "detections");
   const auto phones =
       static_cast<int>(scenario.arrays[static_cast<std::size_t>(plan.array)].phones.size());
   if (table.has("matched_filter") && !plan.uses_matched_filter())
@@ -191,17 +207,19 @@ MeasurePlan read_measure(TomlTable table, const Scenario& scenario) {
       throw table.fault("cells", "snr_matched or a detection by the matched filter with it");
     plan.cells = read_cells(table, scenario);
   }
-  if (table.has("receiver") && !plan.uses_receiver())
-    throw table.fault(
-        "receiver",
-        "localisation_error, localisation_ellipse or a detection by the receiver with it");
+  if (table.has("receiver") && !plan.uses_receiver() && plan.detections_every == 0)
+    throw table.fault("receiver",
+                      "localisation_error, localisation_ellipse, detections or a detection by the "
+                      "receiver with it");
   read_receiver(table.table("receiver"), plan);
   table.finish();
   const bool nothing = plan.wanted.empty() && !plan.needs_samples();
   if (nothing) throw table.fault("echo_level", "at least one measure, echo_level = true say");
   if (scenario.targets.empty() &&
       (plan.needs.targets || plan.uses_matched_filter() || plan.uses_receiver()))
-    throw table.fault("echo_level", "series_level or time_series alone: the scenario has no target",
+    throw table.fault("echo_level",
+                      "series_level, time_series, spectra or detections alone: the scenario has no "
+                      "target",
                       "a measure of targets");
   return plan;
 }

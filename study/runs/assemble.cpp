@@ -49,6 +49,10 @@ bool assemble(OutputFile& output, const Fingerprint& fingerprint, IndexRange ran
   results.table.cells = cell_sums(fingerprint.cells);
   SeriesSource series;
   std::vector<std::size_t> home;  // [kept] which journal
+  std::vector<KeptSource> kept;
+  std::vector<std::vector<std::size_t>> home_of;  // [kinds][kept]
+  for (const KeptKind& kind : kept_kinds()) kept.push_back({.kind = &kind});
+  home_of.resize(kept.size());
   for (const Journal* journal : journals) results.table.cells.add(journal->imported_cells());
   for (const Segment& segment : segments(journals, range)) {
     const Journal& journal = *journals[segment.journal];
@@ -63,19 +67,26 @@ bool assemble(OutputFile& output, const Fingerprint& fingerprint, IndexRange ran
       series.timing.push_back(row.timing);
       home.push_back(segment.journal);
     });
+    for (std::size_t i = 0; i < kept.size(); ++i)
+      journal.arrays(segment.range, kept[i].kind->name,
+                     [&](std::uint64_t index, KeptArray&& array) {
+                       kept[i].told.index.push_back(index);
+                       kept[i].told.shapes.push_back(std::move(array.shape));
+                       kept[i].told.heads.push_back(std::move(array.head));
+                       home_of[i].push_back(segment.journal);
+                     });
   }
-  series.pressure = [&](std::size_t k) {
-    std::vector<float> pressure;
-    journals[home[k]]->rows({series.index[k], series.index[k] + 1}, true,
-                            [&](Row&& row) { pressure = std::move(row.pressure); });
-    return pressure;
-  };
+  series.pressure = [&](std::size_t k) { return journals[home[k]]->pressure(series.index[k]); };
+  for (std::size_t i = 0; i < kept.size(); ++i)
+    kept[i].array = [&, i](std::size_t k) {
+      return journals[home_of[i][k]]->array(kept[i].told.index[k], kept[i].kind->name);
+    };
   for (const Journal* journal : journals)
     for (const Session& session : journal->sessions()) results.sessions.push_back(session);
   results.reuse = take_reuse(results.table);
   results.summary = summarise(results.table);
   if (warnings != nullptr) *warnings = results.summary.warnings;
-  write_study_file(output, results, series);
+  write_study_file(output, results, series, kept);
   return results.complete();
 }
 

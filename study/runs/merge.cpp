@@ -131,30 +131,41 @@ void sort_faults(std::vector<std::string>& faults) {
   if (faults.size() > most_faults) faults.resize(most_faults);
 }
 
-/// The k-th kept time series: part and row there.
+/// The k-th thing of a kind that is kept: part and row there.
 struct Kept {
   std::size_t part = 0, row = 0;
 };
+using AllKept = std::vector<Kept>;
 
 /// Everything but the summary, piece by piece.
 class PartsCollector {
  public:
-  PartsCollector(Parts& parts, StudyResults& results, SeriesSource& series, const fs::path& folder)
-      : parts_(parts), results_(results), series_(series), folder_(folder) {}
+  PartsCollector(Parts& parts, StudyResults& results, SeriesSource& series,
+                 std::vector<KeptSource>& kept, const fs::path& folder)
+      : parts_(parts),
+        results_(results),
+        series_(series),
+        arrays_(kept),
+        folder_(folder),
+        kept_arrays_(kept.size()) {}
 
   void add(const Piece& piece);
   [[nodiscard]] std::vector<CataloguePart> catalogue() && { return std::move(catalogue_); }
-  [[nodiscard]] std::vector<Kept> kept() && { return std::move(kept_); }
+  [[nodiscard]] AllKept kept() && { return std::move(kept_); }
+  [[nodiscard]] std::vector<AllKept> kept_arrays() && { return std::move(kept_arrays_); }
 
  private:
   void open(std::size_t part);
+  [[nodiscard]] CataloguePart::Kept add_arrays(const Piece& piece, std::size_t kind);
 
   Parts& parts_;
   StudyResults& results_;
   SeriesSource& series_;
+  std::vector<KeptSource>& arrays_;
   fs::path folder_;
   std::vector<CataloguePart> catalogue_;
-  std::vector<Kept> kept_;
+  AllKept kept_;
+  std::vector<AllKept> kept_arrays_;  // [kinds]
   // of the part that is looked at
   std::optional<std::size_t> here_;
   Table table_;
@@ -162,7 +173,20 @@ class PartsCollector {
   std::vector<std::int32_t> samples_;
   std::vector<SeriesTiming> timing_;
   Shape series_shape_;
+  std::vector<KeptReader> readers_;  // [kinds]
 };
+
+/// Where indices of a range stand among rising ones.
+struct Places {
+  std::size_t first = 0, end = 0;
+};
+Places places_of(const IndexRange& range, const std::vector<std::uint64_t>& index) {
+  const auto at = [&](std::uint64_t one) {
+    return static_cast<std::size_t>(std::lower_bound(index.begin(), index.end(), one) -
+                                    index.begin());
+  };
+  return {at(range.first), at(range.end)};
+}
 
 void PartsCollector::open(std::size_t part) {
   if (here_ == part) return;
@@ -172,18 +196,36 @@ void PartsCollector::open(std::size_t part) {
   series_shape_ = file.series_shape();
   samples_ = series_index_.empty() ? std::vector<std::int32_t>{} : file.series_samples();
   timing_ = file.series_timing();
+  readers_.clear();
+  for (const KeptKind& kind : kept_kinds()) readers_.emplace_back(file, kind);
   here_ = part;
+}
+
+CataloguePart::Kept PartsCollector::add_arrays(const Piece& piece, std::size_t kind) {
+  const KeptReader& reader = readers_[kind];
+  const KeptHeads& told = reader.told();
+  const auto [first, end] = places_of(piece.range, told.index);
+  for (std::size_t k = first; k < end; ++k) {
+    KeptHeads& all = arrays_[kind].told;
+    all.index.push_back(told.index[k]);
+    all.shapes.push_back(told.shapes[k]);
+    all.heads.push_back(told.heads[k]);
+    kept_arrays_[kind].push_back({piece.part, k});
+  }
+  const KeptKind& of = *arrays_[kind].kind;
+  CataloguePart::Kept rows{.heads = {first, end - first, {told.index.size()}},
+                           .values = {first, end - first, parts_.at(piece.part).kept_shape(of)}};
+  if (of.layout == KeptKind::Layout::ragged && end > first) {
+    rows.values.first = reader.first_line(first);
+    rows.values.rows = reader.first_line(end) - rows.values.first;
+  }
+  return rows;
 }
 
 void PartsCollector::add(const Piece& piece) {
   open(piece.part);
   add_rows(results_.table, table_, piece);
-  const auto at = [&](std::uint64_t index) {
-    return static_cast<std::size_t>(
-        std::lower_bound(series_index_.begin(), series_index_.end(), index) -
-        series_index_.begin());
-  };
-  const std::size_t first = at(piece.range.first), end = at(piece.range.end);
+  const auto [first, end] = places_of(piece.range, series_index_);
   for (std::size_t k = first; k < end; ++k) {
     Shape shape(series_shape_.begin() + 1, series_shape_.end());
     shape[sample_axis(shape)] = static_cast<std::size_t>(samples_[k]);
@@ -196,12 +238,10 @@ void PartsCollector::add(const Piece& piece) {
   const fs::path relative = fs::relative(parts_.name(piece.part), folder_, error);
   catalogue_.push_back(
       {.file = error || relative.empty() ? fs::absolute(parts_.name(piece.part)) : relative,
-       .first = piece.row,
-       .rows = piece.range.size(),
-       .first_series = first,
-       .series_rows = end - first,
-       .all_rows = table_.index.size(),
-       .series_shape = series_shape_.empty() ? Shape{0} : series_shape_});
+       .table = {piece.row, piece.range.size(), {table_.index.size()}},
+       .series = {first, end - first, series_shape_.empty() ? Shape{0} : series_shape_}});
+  for (std::size_t kind = 0; kind < arrays_.size(); ++kind)
+    catalogue_.back().kept.push_back(add_arrays(piece, kind));
 }
 
 }  // namespace
@@ -222,21 +262,35 @@ MergeReport merge(const std::vector<fs::path>& paths, OutputFile& output,
   results.table.columns = all.fingerprint.columns;
   results.table.values.resize(all.fingerprint.columns.size());
   SeriesSource series;
-  PartsCollector collector(parts, results, series,
+  std::vector<KeptSource> arrays;
+  for (const KeptKind& kind : kept_kinds()) arrays.push_back({.kind = &kind});
+  PartsCollector collector(parts, results, series, arrays,
                            output.target().has_parent_path() ? output.target().parent_path() : ".");
   for (const Piece& piece : all.pieces) collector.add(piece);
   std::vector<CataloguePart> catalogue = std::move(collector).catalogue();
-  const std::vector<Kept> kept = std::move(collector).kept();
+  const AllKept kept = std::move(collector).kept();
+  const std::vector<AllKept> kept_arrays = std::move(collector).kept_arrays();
   for (std::size_t p = 0; p < parts.size(); ++p) {
     for (std::string& fault : parts.at(p).faults()) results.faults.push_back(std::move(fault));
     sort_faults(results.faults);
     results.table.cells.add(parts.at(p).cells());
   }
   series.pressure = [&](std::size_t k) { return parts.at(kept[k].part).series(kept[k].row); };
+  std::optional<KeptReader> reader;  // of the part that is open
+  std::pair<std::size_t, std::size_t> reads{};
+  for (std::size_t kind = 0; kind < arrays.size(); ++kind)
+    arrays[kind].array = [&, kind](std::size_t k) {
+      const Kept& one = kept_arrays[kind][k];
+      if (const std::pair now{kind, one.part}; !reader || reads != now) {
+        reader.emplace(parts.at(one.part), *arrays[kind].kind);
+        reads = now;
+      }
+      return reader->at(one.row);
+    };
   results.reuse = take_reuse(results.table);
   results.summary = summarise(results.fingerprint, results.table);
   if (options.copy) catalogue.clear();
-  write_study_file(output, results, series, catalogue);
+  write_study_file(output, results, series, arrays, catalogue);
   MergeReport report{
       .rows = results.table.index.size(), .realisations = range.size(), .missing = missing};
   report.warnings = results.summary.warnings;

@@ -21,8 +21,8 @@ Work work_of(const Study& study, const Realise& realise) {
           .summarise = [&study](const Table& table) { return summary_of(study, table); },
           .estimate = [&study] { return RunningEstimate(study); },
           .skips = study.on_error == OnError::skip,
-          // With their time series rows are large, also when they are made and wait for their turn.
-          .in_flight = study.measure.series_every > 0
+          // With what they keep rows are large, also when they are made and wait for their turn.
+          .in_flight = study.measure.keeps_any()
                            ? static_cast<std::size_t>(tbb::this_task_arena::max_concurrency())
                            : 0};
 }
@@ -159,6 +159,12 @@ void import_rows(const std::filesystem::path& path, IndexRange range, bool skipp
   if (!kept.empty()) samples = file.series_samples();
   const std::vector<SeriesTiming> timing = file.series_timing();
   const std::vector<std::string> faults = file.faults();
+  struct Reading {
+    KeptReader from;
+    std::size_t next = 0;
+  };
+  std::vector<Reading> arrays;
+  for (const KeptKind& kind : kept_kinds()) arrays.push_back({KeptReader(file, kind)});
   std::size_t series = 0, fault = 0;
   for (std::size_t i = 0; i < table.index.size(); ++i) {
     Row row{.index = table.index[i], .valid = table.valid[i] != 0};
@@ -174,6 +180,11 @@ void import_rows(const std::filesystem::path& path, IndexRange range, bool skipp
           static_cast<std::size_t>(samples[series]);
       row.timing = timing[series];
       ++series;
+    }
+    for (Reading& one : arrays) {
+      const std::vector<std::uint64_t>& index = one.from.told().index;
+      if (one.next < index.size() && index[one.next] == row.index)
+        row.kept.push_back(one.from.at(one.next++));
     }
     if (row.index >= range.first && row.index < range.end && (row.valid || skipped) &&
         !journal.done().contains(row.index))

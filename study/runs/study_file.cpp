@@ -197,6 +197,74 @@ std::vector<float> StudyFile::series(std::size_t k) const {
   return file_.read<float>("time_series/pressure", start, count);
 }
 
+KeptHeads StudyFile::kept_heads(const KeptKind& kind) const {
+  const std::string group = std::string(kind.name) + '/';
+  KeptHeads told;
+  if (!file_.has(group + "index")) return told;
+  const auto index = file_.read<std::int64_t>(group + "index");
+  told.index.assign(index.begin(), index.end());
+  const auto count = file_.read<std::int32_t>(group + kind.count.name);
+  const Shape all = kept_shape(kind);
+  const bool padded = kind.layout == KeptKind::Layout::padded;
+  std::size_t lines = 0;
+  bool fits = count.size() == index.size() && all.size() == (padded ? 3U : 1U);
+  for (const std::int32_t n : count) {
+    fits = fits && n >= 0 && (!padded || static_cast<std::size_t>(n) <= all[2]);
+    lines += static_cast<std::size_t>(std::max(n, 0));
+  }
+  if (!fits || all[0] != (padded ? index.size() : lines))
+    throw InputError({.where = path().string() + ": " + group + kind.count.name,
+                      .got = "numbers that do not fit the values",
+                      .expected = "those that asdic study wrote"});
+  for (const std::int32_t n : count)
+    told.shapes.push_back(padded ? Shape{all[1], static_cast<std::size_t>(n)}
+                                 : Shape{static_cast<std::size_t>(n), kind.values.size()});
+  told.heads.resize(index.size());
+  for (const KeptColumn& column : kind.head) {
+    const auto values = file_.read<double>(group + column.name);
+    for (std::size_t k = 0; k < index.size(); ++k) told.heads[k].push_back(values.at(k));
+  }
+  return told;
+}
+
+Shape StudyFile::kept_shape(const KeptKind& kind) const {
+  const std::string dataset = std::string(kind.name) + '/' + kind.values.front().name;
+  return file_.has(dataset) ? file_.info(dataset).shape : Shape{0};
+}
+
+KeptReader::KeptReader(const StudyFile& file, const KeptKind& kind)
+    : file_(file), kind_(kind), told_(file.kept_heads(kind)) {
+  if (kind.layout == KeptKind::Layout::padded) return;
+  first_line_.assign(1, 0);
+  for (const Shape& shape : told_.shapes) first_line_.push_back(first_line_.back() + shape[0]);
+}
+
+/// The lines of the k-th and of those behind it.
+void KeptReader::read_lines(std::size_t k) {
+  constexpr std::size_t together = std::size_t{1} << 14;
+  first_ = first_line_[k];
+  end_ = std::max(first_line_[k + 1], std::min(first_line_.back(), first_ + together));
+  lines_.clear();
+  for (const KeptColumn& column : kind_.values)
+    lines_.push_back(file_.file().read<double>(std::string(kind_.name) + '/' + column.name,
+                                               {first_}, {end_ - first_}));
+}
+
+KeptArray KeptReader::at(std::size_t k) {
+  KeptArray made{
+      .name = std::string(kind_.name), .shape = told_.shapes.at(k), .head = told_.heads.at(k)};
+  if (kind_.layout == KeptKind::Layout::padded) {
+    made.values = file_.file().read<double>(std::string(kind_.name) + '/' + kind_.values[0].name,
+                                            {k, 0, 0}, {1, made.shape[0], made.shape[1]});
+    return made;
+  }
+  if (made.shape[0] == 0) return made;
+  if (first_line_[k] < first_ || first_line_[k + 1] > end_) read_lines(k);
+  for (std::size_t line = first_line_[k]; line < first_line_[k + 1]; ++line)
+    for (const std::vector<double>& column : lines_) made.values.push_back(column[line - first_]);
+  return made;
+}
+
 namespace {
 
 template <class T>

@@ -10,6 +10,7 @@
 #include "io/files/output_file.h"
 #include "io/hdf5/hdf5_file.h"
 #include "study/journal/fingerprint.h"
+#include "study/measures/kept_array.h"
 #include "study/sampling/index_set.h"
 #include "study/summary/summary.h"
 
@@ -41,20 +42,46 @@ struct SeriesSource {
   std::function<std::vector<float>(std::size_t k)> pressure{};
 };
 
+/// What tells of the arrays of a kind that were kept.
+struct KeptHeads {
+  std::vector<std::uint64_t> index{};        ///< [kept] of which realisations
+  std::vector<Shape> shapes{};               ///< [kept]
+  std::vector<std::vector<double>> heads{};  ///< [kept]
+};
+
+/// The arrays themselves, as they are asked for one by one.
+struct KeptSource {
+  const KeptKind* kind = nullptr;
+  KeptHeads told{};
+  /// The k-th of them; called once for each, in order.
+  std::function<KeptArray(std::size_t k)> array{};
+};
+
+/// Rows of a dataset of a part that a catalogue shows.
+struct PartRows {
+  std::size_t first = 0, rows = 0;
+  Shape shape{0};  ///< of the part's dataset
+};
+
 /// Where the rows of a catalogue lie: file and its rows, in the order of the catalogue.
 struct CataloguePart {
-  std::filesystem::path file;                     ///< relative to the catalogue's folder
-  std::size_t first = 0, rows = 0;                ///< of the part's /index
-  std::size_t first_series = 0, series_rows = 0;  ///< of the part's /time_series/index
-  std::size_t all_rows = 0;                       ///< of the part
-  Shape series_shape{};                           ///< of the part's /time_series/pressure
+  std::filesystem::path file;  ///< relative to the catalogue's folder
+  PartRows table{};            ///< of the part's /index
+  PartRows series{};           ///< of the part's /time_series/pressure
+  struct Kept {
+    PartRows heads{};   ///< of a kind's /index
+    PartRows values{};  ///< of its values
+  };
+  std::vector<Kept> kept{};  ///< [kept_kinds()]
 };
 
 /// Writes a part and gives it its name when it is whole.
-/// \param catalogue  empty: all data are in the file; else its table and time series show those
-/// of the parts
+/// \param kept       [kept_kinds()]
+/// \param catalogue  empty: all data are in the file; else its table, time series and what else
+/// was kept show those of the parts
 /// \throws RunError
 void write_study_file(OutputFile& output, const StudyResults& results, const SeriesSource& series,
+                      const std::vector<KeptSource>& kept,
                       const std::vector<CataloguePart>& catalogue = {});
 
 /// A file of a study, opened.
@@ -82,6 +109,10 @@ class StudyFile {
   /// The k-th of them, [channels × its own samples × iq].
   [[nodiscard]] std::vector<float> series(std::size_t k) const;
 
+  /// Of a kind; empty where none are kept.
+  [[nodiscard]] KeptHeads kept_heads(const KeptKind& kind) const;
+  /// Of the dataset that holds its values: of padded ones, or of the first number of ragged ones.
+  [[nodiscard]] Shape kept_shape(const KeptKind& kind) const;
   /// Where the rows of a catalogue lie; {} for a file that holds its own.
   [[nodiscard]] std::vector<std::filesystem::path> parts() const;
   /// \throws InputError naming the first part that is not there: HDF5 would show nothing instead
@@ -101,6 +132,27 @@ class StudyFile {
   IndexRange range_;
   bool complete_ = false;
   std::string manifest_;
+};
+
+/// The arrays of a kind in a file, one by one: those that follow one another are read together.
+class KeptReader {
+ public:
+  /// \param file  outlives it   \throws InputError where counts and values do not fit together
+  KeptReader(const StudyFile& file, const KeptKind& kind);
+  [[nodiscard]] const KeptHeads& told() const noexcept { return told_; }
+  [[nodiscard]] KeptArray at(std::size_t k);
+  /// Of ragged ones: the line before which the k-th begins.
+  [[nodiscard]] std::size_t first_line(std::size_t k) const { return first_line_.at(k); }
+
+ private:
+  void read_lines(std::size_t k);
+
+  const StudyFile& file_;
+  const KeptKind& kind_;
+  KeptHeads told_;
+  std::vector<std::size_t> first_line_;     // [kept + 1] of ragged ones
+  std::size_t first_ = 0, end_ = 0;         // lines that are in hand
+  std::vector<std::vector<double>> lines_;  // [numbers] of ragged ones
 };
 
 /// A dataset of /time_series that has a number for each: how to read its samples.

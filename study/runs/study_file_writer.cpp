@@ -135,17 +135,20 @@ void StudyFileWriter::write_series(const SeriesSource& series) {
       throw RunError("time series of different numbers of channels cannot lie in one dataset");
   }
   const std::vector<std::int64_t> index(series.index.begin(), series.index.end());
-  column<std::int64_t>("time_series/index", index, -1, true);
+  const auto of = [](const CataloguePart& part) {
+    return PartRows{part.series.first, part.series.rows, {part.series.shape.at(0)}};
+  };
+  column<std::int64_t>("time_series/index", index, -1, of);
   describe(file_, "time_series/index", "realisation, counted from 0");
   file_.make_scale("time_series/index", "kept");
-  column<std::int32_t>("time_series/valid_samples", samples, 0, true);
+  column<std::int32_t>("time_series/valid_samples", samples, 0, of);
   describe(file_, "time_series/valid_samples", "samples before the padding");
   file_.attach_scales("time_series/valid_samples", {"time_series/index"});
   for (const SeriesDataset& dataset : series_datasets()) {
     const std::string path = std::string("time_series/") + dataset.name;
     std::vector<double> values;
     for (const SeriesTiming& timing : series.timing) values.push_back(timing.*dataset.value);
-    column<double>(path, values, std::numeric_limits<double>::quiet_NaN(), true);
+    column<double>(path, values, std::numeric_limits<double>::quiet_NaN(), of);
     describe(file_, path, dataset.meaning, dataset.unit);
     file_.attach_scales(path, {"time_series/index"});
   }
@@ -180,15 +183,8 @@ void StudyFileWriter::write_pressure(const SeriesSource& series, const Shape& ro
   if (catalogue_.empty()) {
     file_.create_growing<float>(path, row, chunk);
   } else {
-    std::vector<VirtualRows> parts;
-    for (const CataloguePart& part : catalogue_)
-      if (part.series_rows > 0)
-        parts.push_back({.file = part.file,
-                         .dataset = "/" + path,
-                         .shape = part.series_shape,
-                         .first = part.first_series,
-                         .rows = part.series_rows});
-    file_.write_virtual<float>(path, all, parts, 0.0F);
+    const auto of = [](const CataloguePart& part) { return part.series; };
+    file_.write_virtual<float>(path, all, shown(path, of), 0.0F);
   }
   Digest digest;
   std::vector<float> padded;
@@ -206,8 +202,9 @@ void StudyFileWriter::write_pressure(const SeriesSource& series, const Shape& ro
 }
 
 void write_study_file(OutputFile& output, const StudyResults& results, const SeriesSource& series,
+                      const std::vector<KeptSource>& kept,
                       const std::vector<CataloguePart>& catalogue) {
-  StudyFileWriter(output.part(), results, catalogue).write(series);
+  StudyFileWriter(output.part(), results, catalogue).write(series, kept);
   output.finish();
 }
 
@@ -236,7 +233,7 @@ std::string joined(const std::vector<std::string>& texts) {
 
 void StudyFileWriter::write_root() {
   const Fingerprint& fingerprint = results_.fingerprint;
-  write_filetype(file_, "asdic study", "1.5");
+  write_filetype(file_, "asdic study", "1.6");
   file_.set_attribute("", "title", fingerprint.title);
   file_.set_attribute("", "identity", fingerprint.identity);
   file_.set_attribute("", "seed", std::to_string(fingerprint.seed));

@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <map>
 #include <string>
@@ -19,11 +20,12 @@ class StudyFileWriter {
                   const std::vector<CataloguePart>& catalogue)
       : file_(Hdf5File::create(path)), results_(results), catalogue_(catalogue) {}
 
-  void write(const SeriesSource& series) {
+  void write(const SeriesSource& series, const std::vector<KeptSource>& kept) {
     write_root();
     write_table();
     write_cells();
     write_series(series);
+    for (std::size_t kind = 0; kind < kept.size(); ++kind) write_kept(kind, kept[kind]);
     write_summary();
     write_laws();
     write_manifest();
@@ -36,6 +38,9 @@ class StudyFileWriter {
   void write_table();
   void write_cells();
   void write_series(const SeriesSource& series);
+  void write_kept(std::size_t kind, const KeptSource& kept);
+  void write_padded(std::size_t kind, const KeptSource& kept);
+  void write_ragged(std::size_t kind, const KeptSource& kept);
   void write_summary();
   void write_laws();
   void write_manifest();
@@ -47,22 +52,32 @@ class StudyFileWriter {
     noted_[dataset] = {.shape = shape, .sha256 = sha256};
   }
 
-  /// A column, here or in the parts.
-  template <class T>
-  void column(const std::string& dataset, std::span<const T> values, T fill, bool series = false) {
-    const Shape shape{values.size()};
-    if (catalogue_.empty()) {
-      file_.write<T>(dataset, values, shape);
-    } else {
-      std::vector<VirtualRows> parts;
-      for (const CataloguePart& part : catalogue_)
+  /// Which of a part's rows a dataset shows.
+  using RowsOf = std::function<PartRows(const CataloguePart& part)>;
+  [[nodiscard]] std::vector<VirtualRows> shown(const std::string& dataset, const RowsOf& of) const {
+    std::vector<VirtualRows> parts;
+    for (const CataloguePart& part : catalogue_) {
+      PartRows rows = of(part);
+      if (rows.rows > 0)
         parts.push_back({.file = part.file,
                          .dataset = "/" + dataset,
-                         .shape = {series ? part.series_shape.at(0) : part.all_rows},
-                         .first = series ? part.first_series : part.first,
-                         .rows = series ? part.series_rows : part.rows});
-      file_.write_virtual<T>(dataset, shape, parts, fill);
+                         .shape = std::move(rows.shape),
+                         .first = rows.first,
+                         .rows = rows.rows});
     }
+    return parts;
+  }
+
+  /// A column, here or in the parts. \param of  of which rows of the parts; of one column
+  template <class T>
+  void column(
+      const std::string& dataset, std::span<const T> values, T fill,
+      const RowsOf& of = [](const CataloguePart& part) { return part.table; }) {
+    const Shape shape{values.size()};
+    if (catalogue_.empty())
+      file_.write<T>(dataset, values, shape);
+    else
+      file_.write_virtual<T>(dataset, shape, shown(dataset, of), fill);
     noted<T>(dataset, values);
   }
 

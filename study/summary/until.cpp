@@ -448,6 +448,7 @@ void OrderedEstimate::add(Row row) {
   if (row.index > next_) {
     row.pressure = {};
     row.cells = {};
+    row.kept = {};
     waiting_.emplace(row.index, std::move(row));
     return;
   }

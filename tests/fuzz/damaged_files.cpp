@@ -55,7 +55,8 @@ Bytes ping_file(const fuzz::Scratch& folder) {
 }
 
 Bytes study_file(const fuzz::Scratch& folder) {
-  const support::SyntheticStudy study{.realisations = 12, .skips = true, .series_every = 4};
+  const support::SyntheticStudy study{
+      .realisations = 12, .skips = true, .series_every = 4, .kept_every = 2};
   study::StudyRun run;
   run.output = folder / "made_study.h5";
   static_cast<void>(study::run_study(study.work(), run));
@@ -135,6 +136,10 @@ void read_study(const std::filesystem::path& path) {
   static_cast<void>(file.faults());
   if (!file.series_index().empty()) static_cast<void>(file.series(0));
   static_cast<void>(file.series_timing());
+  for (const study::KeptKind& kind : study::kept_kinds()) {
+    study::KeptReader reader(file, kind);
+    for (std::size_t k = 0; k < reader.told().index.size(); ++k) static_cast<void>(reader.at(k));
+  }
   file.verify();
 }
 

@@ -3,7 +3,7 @@
 #include "fuzz/scratch.h"
 
 // A study's journal, a database of SQLite's: rows that are taken have the width that the journal
-// says, and their time series the shape that they say.
+// says, and their time series and arrays the shape that they say.
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace asdic::detail;
@@ -22,6 +22,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       std::size_t samples = row.pressure_shape.empty() ? 0 : 1;
       for (const std::size_t n : row.pressure_shape) samples *= n;
       fuzz::insist(samples == row.pressure.size(), "a time series fills its shape");
+      for (const study::KeptArray& array : row.kept) {
+        std::size_t numbers = array.shape.empty() ? 0 : 1;
+        for (const std::size_t n : array.shape) numbers *= n;
+        fuzz::insist(numbers == array.values.size(), "an array fills its shape");
+      }
     });
     static_cast<void>(journal.sessions());
   } catch (const InputError& error) {

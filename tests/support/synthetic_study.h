@@ -11,11 +11,13 @@ namespace asdic::detail::support {
 
 /// A study without a sea: rows that cost next to nothing, so that what carries them can be tested
 /// with 10⁵ of them. x is uniform, y = x + noise, every 7th row is skipped if asked for, and
-/// every `series_every`-th keeps a short time series whose length differs from row to row.
+/// every `series_every`-th keeps a short time series whose length differs from row to row; every
+/// `kept_every`-th spectra of as many lengths, and detections of which there may be none.
 struct SyntheticStudy {
   std::uint64_t realisations = 100;
   bool skips = false;
   std::uint64_t series_every = 0;  ///< 0: none
+  std::uint64_t kept_every = 0;
   std::string identity = "synthetic";
 
   [[nodiscard]] study::Row row(std::uint64_t index) const {
@@ -36,6 +38,18 @@ struct SyntheticStudy {
                     .epoch = -0.7};
       for (std::size_t i = 0; i < row.pressure_shape[0] * row.pressure_shape[1]; ++i)
         row.pressure.push_back(static_cast<float>(stream.normal()));
+    }
+    if (row.valid && study::keeps(kept_every, index)) {
+      row.kept = {{.name = "spectra", .shape = {2, 3 + index % 4}, .head = {1.5, 0.1, 7.0}},
+                  {.name = "detections",
+                   .shape = {index / kept_every % 3, study::detections_kind().values.size()}}};
+      row.kept[0].head[1] *= static_cast<double>(index + 1);
+      for (study::KeptArray& array : row.kept)
+        for (std::size_t i = 0; i < array.shape[0] * array.shape[1]; ++i)
+          array.values.push_back(stream.normal());
+      for (std::size_t i = 0; i < row.kept[1].values.size(); ++i)
+        if (study::detections_kind().values[i % row.kept[1].shape[1]].type == ElementType::int32)
+          row.kept[1].values[i] = static_cast<double>(i % 5) - 2.0;
     }
     return row;
   }

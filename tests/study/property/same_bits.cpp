@@ -36,7 +36,7 @@ SummariseFingerprint summary_of(const SyntheticStudy& synthetic) {
   };
 }
 
-const SyntheticStudy some{.realisations = 311, .skips = true, .series_every = 10};
+const SyntheticStudy some{.realisations = 311, .skips = true, .series_every = 10, .kept_every = 6};
 
 TEST(SameBits, ForAnyNumberOfThreads) {
   const TemporaryDirectory folder;
@@ -68,6 +68,23 @@ TEST(SameBits, ForPartsCopiedOrReferredTo) {
   // A catalogue is a part like any other: of parts, a merged file again.
   merge({folder / "catalogue.h5"}, folder / "again.h5", summary_of(some), {.copy = true});
   expect_same_study(folder / "whole.h5", folder / "again.h5");
+}
+
+// A part may hold rows on either side of another's: then those of one file are shown in two pieces.
+TEST(SameBits, ForPartsThatLieWithinOneAnother) {
+  const TemporaryDirectory folder;
+  const SyntheticStudy few{.realisations = 60, .skips = true, .series_every = 5, .kept_every = 4};
+  make(few, run_of(folder / "whole.h5", {0, 60}), 2);
+  for (const IndexRange range : {IndexRange{0, 22}, {22, 41}, {41, 60}})
+    make(few, run_of(folder / (std::to_string(range.first) + ".h5"), range), 2);
+  merge({folder / "0.h5", folder / "41.h5"}, folder / "around.h5", summary_of(few),
+        {.copy = true, .allow_gaps = true});
+  for (const bool copy : {true, false}) {
+    const auto merged = folder / (copy ? "copy.h5" : "catalogue.h5");
+    merge({folder / "around.h5", folder / "22.h5"}, merged, summary_of(few), {.copy = copy});
+    expect_same_study(folder / "whole.h5", merged);
+    EXPECT_NO_THROW(StudyFile(merged).verify());
+  }
 }
 
 /// Stops after some rows.

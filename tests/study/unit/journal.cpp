@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "study/journal/journal.h"
+#include "study/journal/sqlite.h"
 #include "support/synthetic_study.h"
 
 namespace asdic::detail::study {
@@ -15,7 +16,7 @@ using support::SyntheticStudy;
 
 /// Fills a journal and closes it. \return its path
 std::filesystem::path filled(const support::TemporaryDirectory& folder, std::uint64_t count) {
-  const SyntheticStudy synthetic{.skips = true, .series_every = 5};
+  const SyntheticStudy synthetic{.skips = true, .series_every = 5, .kept_every = 4};
   const auto path = folder / "study.h5.journal";
   Journal journal(path, synthetic.work().fingerprint);
   for (std::uint64_t i = 0; i < count; ++i) journal.append(synthetic.row(i));
@@ -23,9 +24,9 @@ std::filesystem::path filled(const support::TemporaryDirectory& folder, std::uin
   return path;
 }
 
-std::vector<Row> rows_of(const Journal& journal, IndexRange range, bool pressure = true) {
+std::vector<Row> rows_of(const Journal& journal, IndexRange range, bool kept = true) {
   std::vector<Row> rows;
-  journal.rows(range, pressure, [&](Row&& row) { rows.push_back(std::move(row)); });
+  journal.rows(range, kept, [&](Row&& row) { rows.push_back(std::move(row)); });
   return rows;
 }
 
@@ -39,11 +40,12 @@ void expect_same(const Row& a, const Row& b) {
   EXPECT_EQ(a.pressure, b.pressure);
   EXPECT_EQ(a.pressure_shape, b.pressure_shape);
   EXPECT_EQ(a.timing, b.timing);
+  EXPECT_EQ(a.kept, b.kept);
 }
 
 TEST(Journal, GivesBackWhatItTook) {
   const support::TemporaryDirectory folder;
-  const SyntheticStudy synthetic{.skips = true, .series_every = 5};
+  const SyntheticStudy synthetic{.skips = true, .series_every = 5, .kept_every = 4};
   Journal journal(filled(folder, 40), synthetic.work().fingerprint);
   EXPECT_EQ(journal.done(), IndexSet({0, 40}));
   EXPECT_EQ(journal.damaged(), 0U);
@@ -106,7 +108,7 @@ std::string_view pattern(const T& value) {
 // One flipped bit of a value, and of a time series: that row is as if it had never been made.
 TEST(Journal, ADamagedRowIsThrownAway) {
   const support::TemporaryDirectory folder;
-  const SyntheticStudy synthetic{.skips = true, .series_every = 5};
+  const SyntheticStudy synthetic{.skips = true, .series_every = 5, .kept_every = 4};
   const auto path = filled(folder, 40);
   const double value = synthetic.row(18).values[1];
   static_cast<void>(
@@ -119,7 +121,7 @@ TEST(Journal, ADamagedRowIsThrownAway) {
 
 TEST(Journal, ADamagedTimeSeriesIsToldAndMadeAgain) {
   const support::TemporaryDirectory folder;
-  const SyntheticStudy synthetic{.skips = true, .series_every = 5};
+  const SyntheticStudy synthetic{.skips = true, .series_every = 5, .kept_every = 4};
   const auto path = filled(folder, 40);
   const std::vector<float> series = synthetic.row(20).pressure;
   static_cast<void>(folder.write(
@@ -133,10 +135,77 @@ TEST(Journal, ADamagedTimeSeriesIsToldAndMadeAgain) {
   EXPECT_EQ(journal.done().missing({0, 40}), IndexSet({20, 21}));
 }
 
+TEST(Journal, ADamagedArrayIsToldAndMadeAgain) {
+  const support::TemporaryDirectory folder;
+  const SyntheticStudy synthetic{.skips = true, .series_every = 5, .kept_every = 4};
+  for (const std::size_t kind : {0U, 1U}) {
+    const auto path = filled(folder, 40);
+    const std::vector<double> values = synthetic.row(20).kept.at(kind).values;
+    ASSERT_GT(values.size(), 2U);
+    static_cast<void>(folder.write(
+        "study.h5.journal",
+        content_with_flipped_bit(path, {reinterpret_cast<const char*>(values.data()), 16})));
+    {
+      const Journal journal(path, synthetic.work().fingerprint);
+      EXPECT_EQ(journal.damaged(), 0U);
+      EXPECT_EQ(journal.array(16, kept_kinds()[kind].name), synthetic.row(16).kept.at(kind));
+      EXPECT_THROW(static_cast<void>(journal.array(20, kept_kinds()[kind].name)), RunError);
+    }
+    const Journal journal(path, synthetic.work().fingerprint);
+    EXPECT_EQ(journal.done().missing({0, 40}), IndexSet({20, 21}));
+    remove_journal(path);
+  }
+}
+
+// One whose array is gone altogether is seen when the journal is opened.
+TEST(Journal, ARowWithoutItsArrayIsThrownAway) {
+  const support::TemporaryDirectory folder;
+  const SyntheticStudy synthetic{.skips = true, .series_every = 5, .kept_every = 4};
+  const auto path = filled(folder, 40);
+  sqlite::Database(path).execute("DELETE FROM kept WHERE idx=8 AND name='spectra'");
+  // … and one whose row does not know of it any more, by the row's checksum.
+  sqlite::Database(path).execute(
+      "DELETE FROM kept WHERE idx=12; UPDATE row SET kept=kept%2 WHERE idx=12");
+  const Journal journal(path, synthetic.work().fingerprint);
+  EXPECT_EQ(journal.damaged(), 2U);
+  IndexSet lost({8, 9});
+  lost.add(IndexRange{12, 13});
+  EXPECT_EQ(journal.done().missing({0, 40}), lost);
+}
+
+// Journals of before there were arrays have no table for them, and checksums of their own kind:
+// these are the bits that an earlier version wrote of this row.
+TEST(Journal, OneOfBeforeThereWereArraysGoesOn) {
+  const support::TemporaryDirectory folder;
+  const SyntheticStudy before{.skips = true, .series_every = 5},
+      now{.skips = true, .series_every = 5, .kept_every = 4};
+  const auto path = folder / "study.h5.journal";
+  {
+    Journal journal(path, before.work().fingerprint);
+    journal.append(before.row(0));
+    journal.append({.index = 1, .values = {1.0, 2.0, 3.0}});
+    journal.close();
+  }
+  {
+    sqlite::Database database(path);
+    sqlite::Statement sum(database, "SELECT checksum FROM row WHERE idx=1");
+    ASSERT_TRUE(sum.step());
+    EXPECT_EQ(sum.text(0), "4e64fa495dc4f6eb");
+    sum.reset();
+    database.execute("DROP TABLE kept");
+  }
+  Journal journal(path, now.work().fingerprint);
+  EXPECT_EQ(journal.damaged(), 0U);
+  EXPECT_EQ(journal.done(), IndexSet({0, 2}));
+  journal.append(now.row(4));
+  expect_same(rows_of(journal, {0, 1}).at(0), before.row(0));
+  expect_same(rows_of(journal, {4, 5}).at(0), now.row(4));
+}
+
 // Cut off anywhere, a journal is refused, or has fewer rows: those that it has are right.
 TEST(Journal, ATruncatedOneNeverLies) {
   const support::TemporaryDirectory folder;
-  const SyntheticStudy synthetic{.skips = true, .series_every = 5};
+  const SyntheticStudy synthetic{.skips = true, .series_every = 5, .kept_every = 4};
   const auto path = filled(folder, 400);
   const std::string bytes = support::content(path);
   int refused = 0;

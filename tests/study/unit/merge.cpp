@@ -16,7 +16,8 @@ class Merge : public testing::Test {
  protected:
   std::filesystem::path part(const std::string& name, IndexRange range,
                              const SyntheticStudy& synthetic = {.realisations = 90,
-                                                                .series_every = 9},
+                                                                .series_every = 9,
+                                                                .kept_every = 5},
                              const std::string& cpu = "one") {
     StudyRun run{.output = folder / name, .range = range};
     run.session.made.cpu = cpu;
@@ -79,17 +80,22 @@ TEST_F(Merge, RefusesATruncatedPart) {
   }
 }
 
-// A flipped bit of a column, and of a time series.
+// A flipped bit of a column, of a time series, of a spectrum, and of a detection's time.
 TEST_F(Merge, RefusesAPartWhoseDataHaveChanged) {
   const auto a = part("a.h5", {0, 60}), b = part("b.h5", {60, 90});
   const std::string bytes = support::content(b);
-  const SyntheticStudy synthetic{.realisations = 90, .series_every = 9};
+  const SyntheticStudy synthetic{.realisations = 90, .series_every = 9, .kept_every = 5};
   const double value = synthetic.row(77).values[0];
   const std::vector<float> series = synthetic.row(81).pressure;
-  const std::string_view patterns[] = {{reinterpret_cast<const char*>(&value), sizeof value},
-                                       {reinterpret_cast<const char*>(series.data()), 12}};
-  const char* datasets[] = {"b.h5: table/x: ", "b.h5: time_series/pressure: "};
-  for (int i = 0; i < 2; ++i) {
+  const std::vector<KeptArray> kept = synthetic.row(70).kept;
+  const std::string_view patterns[] = {
+      {reinterpret_cast<const char*>(&value), sizeof value},
+      {reinterpret_cast<const char*>(series.data()), 12},
+      {reinterpret_cast<const char*>(kept[0].values.data()), 16},
+      {reinterpret_cast<const char*>(kept[1].values.data()), sizeof(double)}};
+  const char* datasets[] = {"b.h5: table/x: ", "b.h5: time_series/pressure: ",
+                            "b.h5: spectra/power: ", "b.h5: detections/time: "};
+  for (int i = 0; i < 4; ++i) {
     std::string changed = bytes;
     const auto at = changed.find(patterns[i]);
     ASSERT_NE(at, std::string::npos);
