@@ -18,7 +18,7 @@ namespace {
 constexpr double error_of_table = 0.004;
 
 /// A root R of a covariance, R·Rᴴ, but for what is 30 dB below its diagonal: Cholesky's, the
-/// largest first. Neighbouring filters and delays have little of their own. \return [n × rank]
+/// largest first. Neighbouring filters have little of their own. \return [n × rank]
 Eigen::MatrixXcd root_of(const Eigen::MatrixXcd& covariance) {
   constexpr double least = 1e-3;
   const Eigen::Index n = covariance.rows();

@@ -10,7 +10,8 @@
 namespace asdic::detail {
 
 /// By how much a filter answers late to an echo of another factor: a sweep's ridge, to the second
-/// order. A hyperbolic sweep's is long and bent: its delay goes as 1 − 1/η.
+/// order. A hyperbolic sweep's is long and bent: its delay goes as 1/η − 1.
+/// Source: docs/theory/processing.md, eq. (13a)
 class RidgeDelay {
  public:
   RidgeDelay() = default;
@@ -33,8 +34,8 @@ class RidgeDelay {
 /// is correlated by the same ρ. With L = ln(|y|²/η), the power over the noise that a filter
 /// receives, an echo at the offset o gives
 ///
-///   D(o) = L₊ − L₋ = 2 ln ρ(o − h) − 2 ln ρ(o + h),   σ² = 4 (1 − ρ(2h))/(ρ(h) D′(0))² · (1 +
-///   1/S)/S · g²(S)
+///   D(o) = L₊ − L₋ = 2 ln ρ(o − h) − 2 ln ρ(o + h)
+///   σ² = 4 (1 − ρ(2h))/(ρ(h) D′(0))² · (1 + 1/S)/S · g²(S)
 ///
 /// D is tabulated from the pulse's ambiguity function and read backwards. Where ρ² falls as
 /// 1 − β²δ², σ² is Cramér and Rao's bound for small h, 1/(2Sβ²). Where it falls at once, 1 − c|δ|,
@@ -79,8 +80,8 @@ struct FactorFound {
 };
 
 /// Goes from a bank's loudest filter to the factor of its echo, and knows how much that scatters:
-/// both from one procedure, which the constructor runs on simulated echoes of every offset between
-/// two filters.
+/// both from one procedure, which the constructor runs on simulated echoes of several offsets
+/// between two filters. Source: docs/theory/processing.md, eq. (13b)
 class FactorFinder {
  public:
   FactorFinder() = default;
