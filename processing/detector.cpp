@@ -66,10 +66,11 @@ double guard_of(const Replica& replica, const NormaliserSettings& settings) {
 }
 
 /// What an echo of power 1 adds to its own background: its side lobes there.
-double own_background(const Replica& replica, const NormaliserSettings& settings, double guard) {
-  const double cell = 1.0 / replica.noise_bandwidth();
+double own_background(const Replica& replica, const NormaliserSettings& settings, double guard,
+                      int sub_bands) {
+  const double cell = sub_bands / replica.noise_bandwidth();
   const double from = std::max(settings.guard_cells * cell, guard);
-  return mean_answer(replica, from, from + settings.reference_cells * cell);
+  return mean_answer(replica, from, from + settings.reference_cells * cell, sub_bands);
 }
 
 /// Beams are steered about the middle of the phones, so that an echo comes at one time in all of
@@ -93,7 +94,7 @@ class Search {
         bank_(replica, dopplers, baseband, settings.sub_bands),
         cell_(bank_.sample_rate() / replica.noise_bandwidth() * settings.sub_bands),
         guard_(guard_of(replica, settings.normaliser)),
-        own_background_(own_background(replica, settings.normaliser, guard_)),
+        own_background_(own_background(replica, settings.normaliser, guard_, settings.sub_bands)),
         estimator_(settings.normaliser, cell_, bank_.sample_rate() * guard_, settings.sub_bands),
         channels_(channel_spectra(baseband)),
         across_(shape_, phones_, weights_, grid_.looks, wavelength_,
@@ -104,14 +105,7 @@ class Search {
         ridge_(-doppler_answer(replica, 1.0 + 0.25 * doppler_cell_, settings.sub_bands).delay /
                (0.25 * doppler_cell_)) {
     if (bank_.filters() < 3) return;
-    // So far apart that a pulse which loses by |offset| alone is not told by its top's jitter.
-    constexpr double wide = 0.27;
-    const double step = step_of(bank_);
-    aside_ = static_cast<std::size_t>(std::max(1.0, std::round(wide * 2.0 * doppler_cell_ / step)));
-    close_ = FactorEstimate(replica, step, doppler_cell_, settings.sub_bands);
-    if (aside_ > 1)
-      wide_ = FactorEstimate(replica, static_cast<double>(aside_) * step, doppler_cell_,
-                             settings.sub_bands);
+    finder_ = FactorFinder(replica, step_of(bank_), doppler_cell_, settings.sub_bands);
   }
 
   DetectorResult run(std::span<const Probe> probes, const std::function<bool()>& proceed) {
@@ -132,7 +126,7 @@ class Search {
     for (const PlacedProbe& probe : probes_)
       result.thresholds_db.push_back(std::isfinite(probe.threshold) ? level_of(probe.threshold)
                                                                     : infinity);
-    const LeakTable leaks(replica_, bank_);
+    const LeakTable leaks(replica_, bank_, finder_.late());
     // Of one echo's paths the pattern of the loudest is known; the others' fill its zeros, to about
     // the level of far side lobes, 1/N².
     const double k = 2.0 * pi / wavelength_, least = 1.0 / std::pow(phones_.size(), 2.0);
@@ -357,40 +351,24 @@ class Search {
     FftBuffer<std::complex<float>> work(bank_.work());
     std::vector<float> out(bank_.samples());
     const std::size_t last = bank_.filters() - 1;
-    const double step = step_of(bank_), later = ridge_ * step * bank_.sample_rate();
     const auto answer = [&](std::size_t f, double sample) {
       bank_.power(f, beams.beam(peak.beam), work.data(), out.data());
       return top_near(out, sample);
     };
     std::size_t middle = peak.filter;
     Top here = answer(middle, static_cast<double>(peak.sample));
-    double offset = 0.0;  // of the factor from the middle's
-    const FactorEstimate* estimate = nullptr;
-    const auto estimated = [&] {
-      const std::size_t room = std::min(middle, last - middle);
-      if (room == 0) return;
-      const std::size_t aside = room < aside_ ? 1 : aside_;
-      estimate = aside == 1 ? &close_ : &wide_;
-      const auto log_snr = [&](std::size_t f) {
-        const double steps = static_cast<double>(f) - static_cast<double>(middle);
-        const double power = answer(f, here.sample + later * steps).power;
-        return std::log((power + std::numeric_limits<double>::min()) / bank_.doppler(f));
-      };
-      offset = estimate->offset(log_snr(middle + aside) - log_snr(middle - aside));
+    const auto of_here = [&](std::size_t f) {  // in another filter
+      const double later = finder_.late()(bank_.doppler(middle), bank_.doppler(f));
+      return answer(f, here.sample + later * bank_.sample_rate());
     };
-    estimated();
-    // Of filters close together noise makes one beside the loudest: asked again about that which
-    // lies between them. No further, or what is left beside a loud echo would be drawn to it.
-    const auto moved =
-        std::clamp<std::ptrdiff_t>(std::lround(offset / std::max(step, 1e-12)),
-                                   -std::ptrdiff_t(aside_) + 1, std::ptrdiff_t(aside_) - 1);
-    const auto next = static_cast<std::ptrdiff_t>(middle) + moved;
-    if (moved != 0 && next > 0 && next < static_cast<std::ptrdiff_t>(last)) {
-      middle = static_cast<std::size_t>(next);
-      here = answer(middle, here.sample + later * static_cast<double>(moved));
-      estimated();
-    }
-    offset = std::clamp(offset, -0.6 * step * double(aside_), 0.6 * step * double(aside_));
+    const FactorFound factor = finder_.find(middle, last, [&](std::size_t f, std::size_t from) {
+      if (from != middle) {
+        here = of_here(from);
+        middle = from;
+      }
+      return std::log((of_here(f).power + std::numeric_limits<double>::min()) / bank_.doppler(f));
+    });
+    const double offset = factor.offset;
     Detection d;
     d.doppler = bank_.doppler(middle) + offset;
     d.time = bank_.time(here.sample) + ridge_ * offset;
@@ -401,9 +379,9 @@ class Search {
     d.level_db = level_of(power);
     // Over the noise alone, without the echo's own side lobes in the background.
     const double noise = static_cast<double>(peak.background) - own_background_ * power;
-    if (estimate != nullptr)
-      d.doppler_sigma =
-          estimate->sigma(power / std::max(noise, 0.4 * static_cast<double>(peak.background)));
+    if (factor.estimate != nullptr)
+      d.doppler_sigma = factor.estimate->sigma(
+          power / std::max(noise, 0.4 * static_cast<double>(peak.background)));
     else  // one filter, or the bank's end: any factor that it answers to
       d.doppler_sigma = doppler_cell_ / std::sqrt(3.0);
     const double centre = 0.5 * (bank_.doppler(0) + bank_.doppler(last)),
@@ -439,8 +417,7 @@ class Search {
   AcrossBeams across_;
   EchoPointing pointing_;
   double doppler_cell_, ridge_;  // delay_per_doppler
-  std::size_t aside_ = 1;        // filters compared lie so many to either side
-  FactorEstimate close_, wide_;  // of filters one, and so many, to either side
+  FactorFinder finder_;
   std::vector<PlacedProbe> probes_;
 };
 

@@ -68,12 +68,14 @@ std::vector<double> sub_band_edges(const Replica& replica, int parts) {
   return edges;
 }
 
-DopplerAnswer doppler_answer(const Replica& replica, double doppler, int sub_bands) {
-  const CrossSpectrum cross(replica, doppler);
-  const std::size_t n = fast_fft_length(4 * cross.bins.size());
+namespace {
+
+/// Mean over the sub-bands of |their transform over their part of the energy|², times the whole
+/// energy's square. \param edges  between them   \return [n] delays
+std::vector<double> sub_band_powers(const CrossSpectrum& cross, std::vector<double> edges,
+                                    std::size_t n) {
   FftBuffer<std::complex<double>> work(n);
   std::vector<double> power(n, 0.0);
-  std::vector<double> edges = sub_band_edges(replica, sub_bands);
   edges.push_back(infinity);
   std::size_t from = 0;
   for (const double edge : edges) {  // each by its own energy, which is E/parts: their mean
@@ -88,6 +90,15 @@ DopplerAnswer doppler_answer(const Replica& replica, double doppler, int sub_ban
       power[i] += static_cast<double>(edges.size()) * std::norm(work[i]);
     from = to;
   }
+  return power;
+}
+
+}  // namespace
+
+DopplerAnswer doppler_answer(const Replica& replica, double doppler, int sub_bands) {
+  const CrossSpectrum cross(replica, doppler);
+  const std::size_t n = fast_fft_length(4 * cross.bins.size());
+  const std::vector<double> power = sub_band_powers(cross, sub_band_edges(replica, sub_bands), n);
   std::size_t top = 0;
   for (std::size_t i = 0; i < n; ++i)
     if (power[i] > power[top]) top = i;
@@ -132,16 +143,15 @@ struct AnswerOverDelay {
   double step = 0.0;  // [s]
   std::vector<double> power;
 };
-AnswerOverDelay answer_over_delay(const Replica& replica) {
+AnswerOverDelay answer_over_delay(const Replica& replica, int sub_bands = 1) {
   const CrossSpectrum cross(replica, 1.0);
   const std::size_t n = fast_fft_length(4 * cross.bins.size());
-  FftBuffer<std::complex<double>> work(n);
-  std::copy(cross.bins.begin(), cross.bins.end(), work.data());
-  ComplexFft<double>(n).inverse(work.data());
   AnswerOverDelay found{.step = 1.0 / (static_cast<double>(n) * cross.spacing), .power = {}};
   for (std::size_t i = 0; i < n / 2 && static_cast<double>(i) * found.step <= replica.duration();
        ++i)
-    found.power.push_back(std::norm(work[i]) / std::norm(work[0]));
+    found.power.push_back(0.0);
+  const std::vector<double> power = sub_band_powers(cross, sub_band_edges(replica, sub_bands), n);
+  for (std::size_t i = 0; i < found.power.size(); ++i) found.power[i] = power[i] / power[0];
   return found;
 }
 
@@ -174,8 +184,8 @@ double reach_of_answer(const Replica& replica, double first, double last) {
   return reach;
 }
 
-double mean_answer(const Replica& replica, double first, double last) {
-  const AnswerOverDelay answer = answer_over_delay(replica);
+double mean_answer(const Replica& replica, double first, double last, int sub_bands) {
+  const AnswerOverDelay answer = answer_over_delay(replica, sub_bands);
   double sum = 0.0, count = 0.0;
   for (std::size_t i = 1; i < answer.power.size(); ++i) {
     const double delay = static_cast<double>(i) * answer.step;

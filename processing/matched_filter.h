@@ -35,7 +35,8 @@ struct DopplerAnswer {
 
 /// Mean of the filter's own answer between two delays, 1 at the echo; what of the pulse's length
 /// lies between. \param first, last [s]
-[[nodiscard]] double mean_answer(const Replica& replica, double first, double last);
+[[nodiscard]] double mean_answer(const Replica& replica, double first, double last,
+                                 int sub_bands = 1);
 
 /// The loudest answer beside the echo's own, past where it has fallen below a quarter of it.
 struct Nail {

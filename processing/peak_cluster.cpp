@@ -16,15 +16,18 @@ constexpr double cleanest = 1e-5;
 
 }  // namespace
 
-LeakTable::LeakTable(const Replica& replica, const MatchedFilterBank& bank)
-    : reach_(static_cast<std::ptrdiff_t>(std::ceil(1.1 * replica.duration() * bank.sample_rate()))),
+LeakTable::LeakTable(const Replica& replica, const MatchedFilterBank& bank, const RidgeDelay& late)
+    : late_(late),
+      lowest_(bank.doppler(0)),
+      step_(bank.filters() > 1 ? bank.doppler(1) - bank.doppler(0) : 0.0),
+      rate_(bank.sample_rate()),
+      reach_(static_cast<std::ptrdiff_t>(std::ceil(1.1 * replica.duration() * bank.sample_rate()))),
       filters_(static_cast<std::ptrdiff_t>(bank.filters())) {
   const std::ptrdiff_t width = 2 * reach_ + 1;
   std::vector<double> delays;
   for (std::ptrdiff_t i = -reach_; i <= reach_; ++i)
     delays.push_back(static_cast<double>(i) / bank.sample_rate());
   values_.assign(static_cast<std::size_t>((2 * filters_ - 1) * width), 0.0F);
-  const double step = filters_ > 1 ? bank.doppler(1) - bank.doppler(0) : 0.0;
   // The cross spectrum of two factors, transformed at the rate of the filters' output.
   const double spacing = 1.0 / (3.0 * replica.duration());
   const auto n = fast_fft_length(static_cast<std::size_t>(std::ceil(bank.sample_rate() / spacing)));
@@ -33,7 +36,7 @@ LeakTable::LeakTable(const Replica& replica, const MatchedFilterBank& bank)
   const std::vector<double> cuts = sub_band_edges(replica, bank.sub_bands());
   in_parallel(static_cast<std::size_t>(2 * filters_ - 1), [&](std::size_t row_number) {
     const std::ptrdiff_t k = static_cast<std::ptrdiff_t>(row_number) + 1 - filters_;
-    const double doppler = 1.0 + step * static_cast<double>(k);
+    const double doppler = 1.0 + step_ * static_cast<double>(k);
     const double low = replica.lowest_frequency() - 0.25 * replica.bandwidth(),
                  high = replica.highest_frequency() + 0.25 * replica.bandwidth();
     if (low * doppler > high || high * doppler < low) return;  // apart in frequency
@@ -65,8 +68,15 @@ LeakTable::LeakTable(const Replica& replica, const MatchedFilterBank& bank)
   });
 }
 
-double LeakTable::at(std::ptrdiff_t samples, std::ptrdiff_t filters) const noexcept {
-  if (std::abs(samples) > reach_ || std::abs(filters) >= filters_) return 0.0;
+double LeakTable::at(std::ptrdiff_t samples, std::size_t matched,
+                     std::size_t filter) const noexcept {
+  const auto filters = static_cast<std::ptrdiff_t>(filter) - static_cast<std::ptrdiff_t>(matched);
+  if (std::abs(filters) >= filters_) return 0.0;
+  const auto factor = [&](std::size_t f) { return lowest_ + step_ * static_cast<double>(f); };
+  const double told = late_(1.0, 1.0 + step_ * static_cast<double>(filters)),
+               later = late_(factor(matched), factor(filter)) - told;
+  samples -= std::lround(later * rate_);
+  if (std::abs(samples) > reach_) return 0.0;
   return static_cast<double>(values_[static_cast<std::size_t>(
       (filters + filters_ - 1) * (2 * reach_ + 1) + samples + reach_)]);
 }
@@ -93,9 +103,7 @@ std::vector<std::size_t> independent_peaks(
     for (auto it = kept.lower_bound(sample - leaks.reach());
          it != kept.end() && it->first <= sample + leaks.reach() && !explained; ++it) {
       const Peak& loud = peaks[it->second];
-      const double in_time =
-          leaks.at(sample - it->first, static_cast<std::ptrdiff_t>(p.filter) -
-                                           static_cast<std::ptrdiff_t>(loud.filter));
+      const double in_time = leaks.at(sample - it->first, loud.filter, p.filter);
       const double leak = std::max(in_time * beam_leak(it->second, p.beam), cleanest);
       const double all = before + leak * static_cast<double>(loud.power);
       explained = static_cast<double>(p.power) < margin * all + static_cast<double>(p.threshold);

@@ -3,6 +3,7 @@
 #include <functional>
 #include <vector>
 
+#include "processing/factor_estimate.h"
 #include "processing/matched_filter.h"
 
 namespace asdic::detail {
@@ -18,14 +19,20 @@ struct Peak {
 /// factor the same echo comes earlier or later.
 class LeakTable {
  public:
-  LeakTable(const Replica& replica, const MatchedFilterBank& bank);
+  /// \param late  the ridge: differences of one filter's factor from another's are told for a
+  /// factor of 1, and about another one a long ridge's delays are others
+  LeakTable(const Replica& replica, const MatchedFilterBank& bank, const RidgeDelay& late);
 
-  /// \param samples  later than the echo   \param filters  above the one that it matches
+  /// \param samples  later than the echo   \param matched, filter  that which it matches, and that
+  /// which is asked
   /// \return the largest |y|² within a sample of there, of an echo of power 1
-  [[nodiscard]] double at(std::ptrdiff_t samples, std::ptrdiff_t filters) const noexcept;
+  [[nodiscard]] double at(std::ptrdiff_t samples, std::size_t matched,
+                          std::size_t filter) const noexcept;
   [[nodiscard]] std::ptrdiff_t reach() const noexcept { return reach_; }  ///< samples either way
 
  private:
+  RidgeDelay late_;
+  double lowest_ = 1.0, step_ = 0.0, rate_ = 0.0;  // factors; of the output [Hz]
   std::ptrdiff_t reach_ = 0, filters_ = 0;
   std::vector<float> values_;  // [2·filters_ − 1][2·reach_ + 1]
 };

@@ -111,23 +111,6 @@ std::string cut(const PingProcessor& processor, const ProcessedArray& made, int 
          six_digits(std::round(0.5 * made.sound_speed * made.result.time_cell)) + " m of range";
 }
 
-/// Where Doppler factors scatter by more than they are told to; "" nowhere. Counted:
-/// docs/theory/processing.md, eq. (13)
-std::string scattered(const PingProcessor& processor, const ProcessedArray& made, int transmitter) {
-  const PulseSettings& pulse = pulse_of(processor.scenario(), transmitter);
-  const bool sweep =
-      std::holds_alternative<Lfm>(pulse.waveform) || std::holds_alternative<Hfm>(pulse.waveform);
-  const bool several = processor.settings().detector.sub_bands > 1,
-             sudden = sweep && pulse.window != PulseWindow::hann;
-  if (made.result.detections.empty() || (!several && !sudden)) return "";
-  return "Doppler factors of " +
-         processor.scenario().transmitters[static_cast<std::size_t>(transmitter)].name +
-         " may scatter by more than their told deviation: up to " +
-         (several ? "2.1 times as much, of sub-bands"
-                  : "1.75 times as much, of a sweep without a "
-                    "Hann window");
-}
-
 void track_array(const PingProcessor& processor, const std::vector<const ProcessedPing*>& pings,
                  const std::vector<int>& first_rows, ProcessedRun& run) {
   std::vector<TrackedPing> tracked;
@@ -219,10 +202,9 @@ ProcessedRun process_pings(const ReceivedPings& recordings, const PingProcessor&
         run.warnings.push_back(faint);
       if (const std::string blast = cancelled(processor, made.array); !blast.empty())
         run.notes.push_back(blast);
-      for (const std::string& note : {cut(processor, made.array, made.transmitter),
-                                      scattered(processor, made.array, made.transmitter)})
-        if (!note.empty() && std::find(run.notes.begin(), run.notes.end(), note) == run.notes.end())
-          run.notes.push_back(note);
+      if (const std::string note = cut(processor, made.array, made.transmitter);
+          !note.empty() && std::find(run.notes.begin(), run.notes.end(), note) == run.notes.end())
+        run.notes.push_back(note);
       for (std::size_t i = 0; i < echoes.size(); ++i)
         echoes[i].threshold_db = made.array.result.thresholds_db[i];
       made.truth = recordings.targets(row, echoes);

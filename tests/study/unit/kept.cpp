@@ -83,7 +83,8 @@ const std::string by_receiver =
 TEST_F(Kept, DetectionsAreTheReceivers) {
   const Study study = read(by_receiver);
   const PingSimulator simulator(scenario_of(study.scenario, study.scenario_path));
-  EXPECT_TRUE(measure(read("[measure]\necho_level = true\n"), simulator).receiver.places.owner.empty());
+  EXPECT_TRUE(
+      measure(read("[measure]\necho_level = true\n"), simulator).receiver.places.owner.empty());
   const Measured made = measure(study, simulator, all_measures, nullptr, nullptr, true);
   const ReceiverAnswers answers =
       receiver_answers(simulator, made.record, study.measure.receiver, 0);
