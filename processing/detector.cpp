@@ -169,6 +169,8 @@ class Search {
                    std::max(0.0, to - from) / result.time_cell;
     result.false_alarm_probability = settings_.normaliser.false_alarm_probability;
     constexpr double wide = 10.0;  // the −40 dB width over 1/B: 4 of a Hann tone
+    result.shaded = settings_.shading != Shading::none;
+    result.sub_bands = settings_.sub_bands;
     result.rough = replica_.bandwidth() > wide * replica_.noise_bandwidth();
     return result;
   }
@@ -430,7 +432,13 @@ double sigma_of(double cell, double snr) {
 ExpectedAlarms expected_alarms(const DetectorResult& of) noexcept {
   const double set = of.cells * of.false_alarm_probability;
   const bool one = of.dopplers.size() == 1;
-  return {.least = (one ? 1.4 : 0.95) * set, .most = (of.rough ? 6.0 : one ? 2.0 : 1.3) * set};
+  const bool several = of.sub_bands > 1;  // a longer cell has more samples
+  const double least = (one || several ? 1.4 : 0.95) * (of.shaded ? 0.6 : 1.0),
+               most = of.rough  ? 6.0
+                      : several ? 5.0
+                      : one     ? 2.0
+                                : 1.3;
+  return {.least = least * set, .most = most * set};
 }
 
 double trusted_sigma(const Detection& detection, const DetectorResult& of) {

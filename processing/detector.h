@@ -72,12 +72,15 @@ struct DetectorResult {
   double cells = 0.0;
   double false_alarm_probability = 0.0;  ///< that is set, of each
   bool rough = false;                    ///< the filter's answer to noise: of a pulse with edges
+  bool shaded = false;                   ///< beams are: wider, so that more of them are one
+  int sub_bands = 1;
 };
 
 /// How many false alarms even Rayleigh noise gives, at least and at most: cells × the set
 /// probability × 1.4 to 2 with one Doppler filter, 0.95 to 1.3 with several, up to 6 of a tone
-/// without a window. In a cell the largest of overlapping samples counts, and peaks of neighbouring
-/// filters and beams are one. Counted; docs/theory/processing.md, "Background and threshold"
+/// without a window, 1.4 to 5 with sub-bands, from 0.6 with shaded beams. In a cell the largest of
+/// overlapping samples counts, and peaks of neighbouring filters and beams are one. Counted;
+/// docs/theory/processing.md, "Background and threshold"
 struct ExpectedAlarms {
   double least = 0.0, most = 0.0;
 };

@@ -9,6 +9,7 @@
 #include "processing/beam_surroundings.h"
 #include "processing/detector.h"
 #include "processing/listening_band.h"
+#include "processing/processing_settings.h"
 #include "sonar/signal/pulse.h"
 #include "sonar/synthesis/direct_synthesis.h"
 #include "sonar/synthesis/synthesis.h"
@@ -39,7 +40,8 @@ Return from(double cosine, double delay, std::complex<double> amplitude) {
 DetectorResult received(const Returns& returns, double noise, bool across, double probability,
                         std::uint32_t seed = 1, const std::vector<Vec3>& places = line(),
                         Beamformer former = Beamformer::conventional,
-                        const std::vector<double>& factors = {1.0}) {
+                        const std::vector<double>& factors = {1.0},
+                        DetectorSettings settings = {}) {
   const Recording recording{.sample_rate = rate, .samples = std::size_t(length * rate)};
   const Pulse pulse = sweep();
   const std::vector<double> p = direct_synthesis(pulse, recording, returns, places);
@@ -49,7 +51,6 @@ DetectorResult received(const Returns& returns, double noise, bool across, doubl
   const Replica known(std::span<const float>(replica(pulse, rate)), rate);
   const Baseband baseband =
       to_baseband(pressure, places.size(), rate, 0.0, {.centre = 1000.0, .width = 400.0}, 0.2);
-  DetectorSettings settings;
   settings.normaliser.false_alarm_probability = probability;
   settings.normaliser.across_beams = across;
   settings.beamformer = former;
@@ -89,6 +90,33 @@ TEST(AcrossBeams, EvenNoiseHasTheFalseAlarmsThatAreTold) {
     }
     EXPECT_GT(found, least - 3.0 * std::sqrt(least)) << speed;
     EXPECT_LT(found, most + 3.0 * std::sqrt(most)) << speed;
+  }
+}
+
+// So it is of sub-bands, whose cells have more samples, and of shaded beams, which are wider; what
+// is told of plain ones would be too few, or too many.
+TEST(AcrossBeams, EvenNoiseHasTheFalseAlarmsOfSubBandsAndShadedBeams) {
+  const Replica known(std::span<const float>(replica(sweep(), rate)), rate);
+  for (const auto& [sub_bands, shading] :
+       {std::pair{2, Shading::none}, {4, Shading::none}, {8, Shading::none}, {1, Shading::hann}}) {
+    DetectorSettings settings;
+    settings.sub_bands = sub_bands;
+    settings.shading = shading;
+    const std::vector<double> bank =
+        doppler_bank(known, 2.0 * 15.0 / c, ProcessingSettings{}.bank_loss_db, sub_bands);
+    double found = 0.0, set = 0.0, least = 0.0, most = 0.0;
+    for (std::uint32_t seed = 21; seed <= 28; ++seed) {
+      const DetectorResult one =
+          received({}, 1.0, false, 1e-3, seed, line(), Beamformer::conventional, bank, settings);
+      found += double(one.detections.size());
+      set += one.cells * 1e-3;
+      least += expected_alarms(one).least;
+      most += expected_alarms(one).most;
+    }
+    std::printf("%d sub-bands, %s: %.0f found, %.0f set, %.2f times\n", sub_bands,
+                shading == Shading::hann ? "hann" : "plain", found, set, found / set);
+    EXPECT_GT(found, least - 3.0 * std::sqrt(least)) << sub_bands;
+    EXPECT_LT(found, most + 3.0 * std::sqrt(most)) << sub_bands;
   }
 }
 
