@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <tbb/parallel_for.h>
 
 #include <cmath>
 
@@ -8,6 +7,7 @@
 #include "study/summary/summary.h"
 #include "support/deep.h"
 #include "support/plain_sea.h"
+#include "support/realised.h"
 #include "support/summary_tables.h"
 #include "support/temporary_directory.h"
 
@@ -37,21 +37,6 @@ Study passing(double speed, std::uint64_t rows, const std::string& tracker = "tr
                                "target.0.velocity=[0.0," + std::to_string(speed) + ",0.0]"});
 }
 
-Table rows_of(const Study& study) {
-  const Realiser realiser(study);
-  std::vector<Row> rows(study.realisations);
-  tbb::parallel_for(std::size_t{0}, rows.size(),
-                    [&](std::size_t i) { rows[i] = realiser.realise(i); });
-  Table table{.columns = columns(study)};
-  table.values.resize(table.columns.size());
-  for (const Row& row : rows) {
-    table.index.push_back(row.index);
-    table.valid.push_back(row.valid);
-    for (std::size_t c = 0; c < row.values.size(); ++c) table.values[c].push_back(row.values[c]);
-  }
-  return table;
-}
-
 double mean(const Table& table, const std::string& name) {
   double sum = 0.0, n = 0.0;
   for (const double x : table.values[column_of(table, name)])
@@ -72,7 +57,7 @@ double root_mean_square(const Table& table, const std::string& name) {
 TEST(TrackedRun, ATrackBeginsWithItsHits) {
   const std::uint64_t rows = support::deep() ? 400 : 40;
   const Study study = passing(4.0, rows);
-  const Table table = rows_of(study);
+  const Table table = support::realised(study);
   const ColumnValues &tracked = table.values[column_of(table, "track_ping")],
                      &initiated = table.values[column_of(table, "initiation_ping")];
   int same = 0;
@@ -101,7 +86,7 @@ TEST(TrackedRun, ATrackBeginsWithItsHits) {
 // What goes faster than the tracker thinks targets go is hit as often, and leaves the gate.
 TEST(TrackedRun, HitsOutsideTheGateAreNoTrack) {
   const Study study = passing(35.0, 20, "{ track_max_speed = 2.0, track_acceleration = 0.001 }");
-  const Table table = rows_of(study);
+  const Table table = support::realised(study);
   EXPECT_GT(mean(table, "initiated"), 0.5);
   EXPECT_LT(mean(table, "tracked"), 0.1);
 }
