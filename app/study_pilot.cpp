@@ -84,11 +84,20 @@ std::string whole_text(const Pilot& pilot, int threads) {
 
 std::string memory_text(const Pilot& pilot, int threads) {
   constexpr double shared = 1.5 * study::Realiser::shared_bytes;  // with what malloc adds
+  const double base = pilot.base_memory + shared;
+  const study::Predicted& most = pilot.row_most;
   std::string text =
-      fmt::format("memory     up to {}: {} the program, {} what rows share, {} a row and thread",
-                  byte_count(pilot.base_memory + shared + threads * pilot.row_memory),
-                  byte_count(pilot.base_memory), byte_count(shared), byte_count(pilot.row_memory));
-  if (threads * pilot.row_memory > pilot.budget)
+      fmt::format("memory     {}: {} the program, {} what rows share, {} a row and thread",
+                  byte_count(base + threads * most.total), byte_count(pilot.base_memory),
+                  byte_count(shared), byte_count(most.total));
+  if (most.interval.high > 1.05 * pilot.row_memory)
+    text += fmt::format(
+        ";\n           the dearest row tried takes {}, the dearest of all {} to {} (95 %)",
+        byte_count(pilot.row_memory), byte_count(most.interval.low),
+        byte_count(most.interval.high));
+  else if (std::isnan(most.interval.high))
+    text += " at least; more rows tell how much";
+  if (threads * most.total > pilot.budget)
     text += fmt::format("; rows wait for one another, as run.memory allows {}",
                         byte_count(pilot.budget));
   const double rows = static_cast<double>(pilot.count);

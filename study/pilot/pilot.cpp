@@ -163,7 +163,7 @@ Pilot pilot(const Study& study, const PilotOptions& options) {
   };
 
   std::vector<Row> rows;
-  std::vector<double> costs;
+  std::vector<double> costs, memory;
   RowCost first;  // with what a process does once: plans of transforms, pages of the program
   static_cast<void>(Tries(study, options).make(indices.front(), first));
   step(1);
@@ -189,8 +189,11 @@ Pilot pilot(const Study& study, const PilotOptions& options) {
     made.mean.total += row.cost.total / static_cast<double>(made.rows.size());
     for (std::size_t s = 0; s < made.mean.stages.size(); ++s)
       made.mean.stages[s] += row.cost.stages[s] / static_cast<double>(made.rows.size());
-    if (std::isfinite(row.memory)) made.row_memory = std::max(made.row_memory, row.memory);
+    if (std::isfinite(row.memory)) memory.push_back(row.memory);
   }
+  constexpr double of_pages = 1e6;  // that a row may take or leave by chance [bytes]
+  if (!memory.empty()) made.row_memory = *std::max_element(memory.begin(), memory.end());
+  made.row_most = predicted_greatest(memory, made.count, options.confidence, of_pages);
   made.processor =
       predicted_total(by_group(costs, made.group), made.group, made.count, options.confidence);
   made.processor.total += made.start;

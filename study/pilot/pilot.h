@@ -53,9 +53,11 @@ struct Pilot {
   std::size_t ordered = 0;            ///< inputs whose values have an order
   std::vector<Turned> turned{};       ///< the cheapest first
   std::vector<Candidate> refused{};   ///< that do not go with what else is set
-  double row_memory = 0.0, base_memory = 0.0;  ///< the most of a row; beside the rows [bytes]
-  double budget = 0.0;                         ///< of all rows at a time (run.memory) [bytes]
-  double file_row = 0.0;  ///< bytes of the result for a row, beside kept samples' own
+  double row_memory = 0.0;            ///< the most of a row that was tried [bytes]
+  Predicted row_most{};               ///< of the dearest row of the study [bytes]
+  double base_memory = 0.0;           ///< beside the rows [bytes]
+  double budget = 0.0;                ///< of all rows at a time (run.memory) [bytes]
+  double file_row = 0.0;              ///< bytes of the result for a row, beside kept samples' own
   double kept_row = 0.0;  ///< of samples, spectra, detections that are kept, on the average …
   bool kept_met = true;   ///< … but for those of which no row that was tried keeps any
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include "core/units.h"
 #include "study/summary/clustered_mean.h"
 
 namespace asdic::detail::study {
@@ -36,6 +37,27 @@ Predicted predicted_total(std::span<const double> groups, std::uint64_t rows, st
   const double high = std::max(of.mean() + half, std::exp(middle + wide));
   made.interval = {known + size * rest * std::max(0.0, low), known + size * rest * high};
   return made;
+}
+
+Predicted predicted_greatest(std::span<const double> known, std::uint64_t count, double confidence,
+                             double least) {
+  Moments logs;
+  double most = 0.0;
+  for (const double x : known) {
+    logs.add(std::log(std::max(x, least)));
+    most = std::max(most, x);
+  }
+  const double m = logs.count(), n = static_cast<double>(count);
+  if (!(n > m)) return {.total = most, .interval = {most, most}};
+  if (m < 2.0) return {.total = most, .interval = {most, std::nan("")}};
+  const double over = -std::expm1(std::log(0.5) / n);  // P(a value > the median of the greatest)
+  const double z = two_sided(1.0 - 2.0 * over);
+  const double wide = student(confidence, m - 1.0) * logs.deviation() *
+                      std::sqrt(1.0 / m + z * z / (2.0 * (m - 1.0)) + pi * pi / (6.0 * z * z));
+  const double middle = logs.mean() + z * logs.deviation();
+  const auto at_least = [&](double log) { return std::max(most, std::exp(log)); };
+  return {.total = at_least(middle),
+          .interval = {at_least(middle - wide), at_least(middle + wide)}};
 }
 
 std::vector<std::uint64_t> rows_to_try(std::uint64_t count, std::uint64_t groups,

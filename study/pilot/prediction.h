@@ -25,6 +25,16 @@ struct Predicted {
 [[nodiscard]] Predicted predicted_total(std::span<const double> groups, std::uint64_t rows,
                                         std::uint64_t count, double confidence);
 
+/// The greatest of `count` rows: of a log-normal law its median, and between what bounds.
+///
+/// ln of the greatest of n normal values is about μ + zσ, z the normal deviate over which one of n
+/// lies half of the time. With μ, σ of the m values that are known it errs by σ√(1/m + z²/2(m −
+/// 1)), and it scatters by itself by σπ/(√6 z) (Gumbel); Student's t of both. At least the greatest
+/// that is known; not a number of a single one. \param known  of rows that were tried, each taken
+/// for `least` at least: where rows take next to nothing their ratios mean nothing
+[[nodiscard]] Predicted predicted_greatest(std::span<const double> known, std::uint64_t count,
+                                           double confidence, double least);
+
 /// Which rows to try of `count`: `groups` runs of `rows` indices each, one run in each of as many
 /// equal parts of the study, at random there (the same ones for the same numbers), rising. All
 /// rows, where there are no more. \param rows  runs begin at multiples of it

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -44,6 +45,37 @@ TEST(Prediction, IntervalHoldsByCounting) {
   EXPECT_GE(coverage(16, [&](auto& r) { return skewed(r); }), 0.92);
   EXPECT_GE(coverage(16, [&](auto& r) { return gamma(r); }), 0.93);
   EXPECT_GE(coverage(5, [&](auto& r) { return gamma(r); }), 0.93);
+}
+
+// Of 16 rows the greatest is nearly always below that of 2000: it must not stand for it.
+TEST(Prediction, GreatestRowHoldsByCounting) {
+  std::mt19937_64 random(11);
+  constexpr int trials = 1500;
+  for (const double sigma : {0.3, 1.0}) {
+    std::lognormal_distribution<double> law(0.0, sigma);
+    int held = 0, below = 0, held_by_tried = 0;
+    for (int trial = 0; trial < trials; ++trial) {
+      std::vector<double> known;
+      double most = 0.0;
+      for (int i = 0; i < 2000; ++i) {
+        const double x = law(random);
+        most = std::max(most, x);
+        if (i < 16) known.push_back(x);
+      }
+      const Predicted made = predicted_greatest(known, 2000, 0.95, 1e-3);
+      held += made.interval.low <= most && most <= made.interval.high ? 1 : 0;
+      below += made.total < most ? 1 : 0;
+      held_by_tried += most <= *std::max_element(known.begin(), known.end()) ? 1 : 0;
+    }
+    EXPECT_GE(held, 0.92 * trials) << sigma;
+    EXPECT_NEAR(below, 0.5 * trials, 0.12 * trials) << sigma;
+    EXPECT_LE(held_by_tried, 0.02 * trials) << sigma;
+  }
+  const std::vector<double> one{2.0}, all{1.0, 4.0}, small{0.0, 1.0, 3.0};
+  EXPECT_TRUE(std::isnan(predicted_greatest(one, 10, 0.95, 1e-3).interval.high));
+  EXPECT_EQ(predicted_greatest(all, 2, 0.95, 1e-3).total, 4.0);
+  // Rows that take next to nothing are as good as alike.
+  EXPECT_NEAR(predicted_greatest(small, 1000, 0.95, 1e6).interval.high, 1e6, 1.0);
 }
 
 TEST(Prediction, MeanAndNotMedianTimesRows) {
