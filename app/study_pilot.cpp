@@ -86,11 +86,13 @@ std::string memory_text(const Pilot& pilot, int threads) {
   constexpr double shared = 1.5 * study::Realiser::shared_bytes;  // with what malloc adds
   const double base = pilot.base_memory + shared;
   const study::Predicted& most = pilot.row_most;
+  if (std::isnan(pilot.row_memory))
+    return "memory     not known: this system does not tell what a row takes\n";
   std::string text =
       fmt::format("memory     {}: {} the program, {} what rows share, {} a row and thread",
                   byte_count(base + threads * most.total), byte_count(pilot.base_memory),
                   byte_count(shared), byte_count(most.total));
-  if (most.interval.high > 1.05 * pilot.row_memory)
+  if (most.interval.high > 1.05 * std::max(pilot.row_memory, most.interval.low))
     text += fmt::format(
         ";\n           the dearest row tried takes {}, the dearest of all {} to {} (95 %)",
         byte_count(pilot.row_memory), byte_count(most.interval.low),
@@ -105,10 +107,15 @@ std::string memory_text(const Pilot& pilot, int threads) {
   const double summary = std::min(rows, in_memory) * pilot.file_row + 160.0 * rows;
   text +=
       fmt::format("\n           and up to {} for the summary at the end\n", byte_count(summary));
-  text += fmt::format("file       {} a row", byte_count(pilot.file_row));
+  return text;
+}
+
+std::string file_text(const Pilot& pilot) {
+  std::string text = fmt::format("file       {} a row", byte_count(pilot.file_row));
   if (pilot.kept_row > 0.0)
     text += fmt::format(" and {} that rows keep beside it", byte_count(pilot.kept_row));
-  text += fmt::format(": {}", byte_count(rows * (pilot.file_row + pilot.kept_row)));
+  text += fmt::format(
+      ": {}", byte_count(static_cast<double>(pilot.count) * (pilot.file_row + pilot.kept_row)));
   if (!pilot.kept_met) text += ", and what else rows keep, of which none was met";
   return text + "; a journal of about as much while it runs\n";
 }
@@ -179,7 +186,7 @@ std::string pilot_text(const Pilot& pilot, int threads) {
   return fmt::format("pilot      {}, one at a time on one thread; nothing is written\n",
                      count_of(pilot.rows.size(), "realisation")) +
          rows_text(pilot) + whole_text(pilot, threads) + memory_text(pilot, threads) +
-         stages_text(pilot) + drivers_text(pilot) + turned_text(pilot);
+         file_text(pilot) + stages_text(pilot) + drivers_text(pilot) + turned_text(pilot);
 }
 
 int try_study(const StudyOptions& options) {

@@ -192,7 +192,7 @@ Pilot pilot(const Study& study, const PilotOptions& options) {
     if (std::isfinite(row.memory)) memory.push_back(row.memory);
   }
   constexpr double of_pages = 1e6;  // that a row may take or leave by chance [bytes]
-  if (!memory.empty()) made.row_memory = *std::max_element(memory.begin(), memory.end());
+  made.row_memory = memory.empty() ? std::nan("") : *std::max_element(memory.begin(), memory.end());
   made.row_most = predicted_greatest(memory, made.count, options.confidence, of_pages);
   made.processor =
       predicted_total(by_group(costs, made.group), made.group, made.count, options.confidence);

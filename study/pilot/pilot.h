@@ -53,7 +53,7 @@ struct Pilot {
   std::size_t ordered = 0;            ///< inputs whose values have an order
   std::vector<Turned> turned{};       ///< the cheapest first
   std::vector<Candidate> refused{};   ///< that do not go with what else is set
-  double row_memory = 0.0;            ///< the most of a row that was tried [bytes]
+  double row_memory = 0.0;            ///< the most of a row that was tried; NaN: not told [bytes]
   Predicted row_most{};               ///< of the dearest row of the study [bytes]
   double base_memory = 0.0;           ///< beside the rows [bytes]
   double budget = 0.0;                ///< of all rows at a time (run.memory) [bytes]

@@ -28,10 +28,11 @@ struct Predicted {
 /// The greatest of `count` rows: of a log-normal law its median, and between what bounds.
 ///
 /// ln of the greatest of n normal values is about μ + zσ, z the normal deviate over which one of n
-/// lies half of the time. With μ, σ of the m values that are known it errs by σ√(1/m + z²/2(m −
-/// 1)), and it scatters by itself by σπ/(√6 z) (Gumbel); Student's t of both. At least the greatest
-/// that is known; not a number of a single one. \param known  of rows that were tried, each taken
-/// for `least` at least: where rows take next to nothing their ratios mean nothing
+/// lies half of the time. With μ and σ of m known values it errs by σ√(1/m + z²/(2m − 2)), and it
+/// scatters by itself by σπ/(√6 z) (Gumbel); Student's t of both. At least the greatest that is
+/// known; no upper bound (NaN) of a single one. Source: docs/theory/studies.md
+/// \param known  of rows that were tried, each taken for `least` at least: where rows take next to
+/// nothing their ratios mean nothing
 [[nodiscard]] Predicted predicted_greatest(std::span<const double> known, std::uint64_t count,
                                            double confidence, double least);
 

@@ -12,6 +12,7 @@
 #include "study/comparison/paired.h"
 #include "study/sampling/law.h"
 #include "study/summary/clustered_mean.h"
+#include "support/summary_tables.h"
 
 namespace asdic::detail::study {
 namespace {
@@ -160,14 +161,7 @@ class TwoSonars : public testing::Test {
                     {.name = "towed", .study = &studies_[1], .table = second_}});
   }
   static const SummaryTable& table(const Comparison& of, const std::string& name) {
-    for (const SummaryTable& one : of.summary.tables)
-      if (one.name == name) return one;
-    throw std::runtime_error("no table " + name);
-  }
-  static const std::vector<double>& column(const SummaryTable& table, const std::string& name) {
-    for (std::size_t i = 0; i < table.columns.size(); ++i)
-      if (table.columns[i].name == name) return table.values[i];
-    throw std::runtime_error("no column " + name);
+    return named(of.summary.tables, name);
   }
 
   std::vector<Study> studies_;
