@@ -6,10 +6,14 @@
 # program calls is a table of jumps under the plain names; core/instruction_level.cpp fills it before main.
 option(ASDIC_NATIVE "Build for this machine alone, with every instruction it has" OFF)
 
+set(ASDIC_ONLY_LEVEL "" CACHE STRING "For developers: build hot sources for this level alone (v2, v3 or v4)")
 set(ASDIC_LEVELS "")
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$" AND NOT ASDIC_NATIVE AND NOT ASDIC_SANITIZE AND NOT ASDIC_COVERAGE
    AND NOT CMAKE_BUILD_TYPE STREQUAL "Debug" AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   set(ASDIC_LEVELS v2 v3 v4)
+  if(ASDIC_ONLY_LEVEL)
+    set(ASDIC_LEVELS ${ASDIC_ONLY_LEVEL})
+  endif()
   enable_language(ASM)
 endif()
 if(ASDIC_NATIVE)
@@ -52,8 +56,9 @@ function(asdic_levels folder)
     list(APPEND objects ${made}/${folder}_${level}.o)
     list(APPEND open ${made}/${folder}_${level}_open.o)
   endforeach()
+  list(JOIN ASDIC_LEVELS "," names)
   add_custom_command(OUTPUT ${objects} ${open} ${made}/jumps.S
-    COMMAND ${CMAKE_COMMAND} -D MADE=${made} -D FOLDER=${folder} -D LD=${CMAKE_LINKER} -D OBJCOPY=${CMAKE_OBJCOPY} -D NM=${CMAKE_NM}
+    COMMAND ${CMAKE_COMMAND} -D MADE=${made} -D FOLDER=${folder} -D LEVELS=${names} -D LD=${CMAKE_LINKER} -D OBJCOPY=${CMAKE_OBJCOPY} -D NM=${CMAKE_NM}
             -P ${PROJECT_SOURCE_DIR}/cmake/level_objects.cmake
     DEPENDS ${compiled} ${PROJECT_SOURCE_DIR}/cmake/level_objects.cmake
     COMMENT "Joining the instruction levels of ${folder}" VERBATIM COMMAND_EXPAND_LISTS)

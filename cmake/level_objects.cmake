@@ -1,9 +1,9 @@
 # Joins the objects of each instruction level into one, hides what is not to be seen, and writes the table of jumps.
-# cmake -D MADE=<where> -D FOLDER=<name> -D LD=... -D OBJCOPY=... -D NM=... -P level_objects.cmake
+# cmake -D MADE=<where> -D FOLDER=<name> -D LEVELS=<v2,v3,v4, or one of them> -D LD=... -D OBJCOPY=... -D NM=... -P level_objects.cmake
 # Reads MADE/<level>.objects; writes MADE/<name>_<level>.o, the same with everything to be seen (.._open.o: for tests), and
 # MADE/jumps.S.
 cmake_minimum_required(VERSION 3.25)
-set(LEVELS v2 v3 v4)
+string(REPLACE "," ";" LEVELS "${LEVELS}")
 
 function(run)
   execute_process(COMMAND ${ARGN} OUTPUT_VARIABLE said COMMAND_ERROR_IS_FATAL ANY)
@@ -59,8 +59,9 @@ foreach(level IN LISTS LEVELS)
   file(REMOVE ${MADE}/${level}.renamed.o)
 endforeach()
 
-# A slot holds the function of v2 until it is filled.
+# A slot holds the function of the lowest level until it is filled. A level that is not built is stood for by the lowest.
 list(LENGTH shared count)
+list(GET LEVELS 0 lowest)
 set(text "/* Written by cmake/level_objects.cmake: jumps to the functions of the instruction level that runs. */\n  .text\n")
 set(slots "")
 set(number 0)
@@ -68,7 +69,7 @@ foreach(name IN LISTS shared)
   math(EXPR offset "8 * ${number}")
   string(APPEND text "  .globl ${name}\n  .type ${name}, @function\n  .p2align 4\n${name}:\n  jmp *slots+${offset}(%rip)\n"
                      "  .size ${name}, .-${name}\n")
-  string(APPEND slots "  .quad ${name}.v2\n")
+  string(APPEND slots "  .quad ${name}.${lowest}\n")
   math(EXPR number "${number} + 1")
 endforeach()
 string(APPEND text "choose:\n  leaq slots(%rip), %rdi\n  leaq alternatives(%rip), %rsi\n  movl $${count}, %edx\n"
@@ -76,7 +77,11 @@ string(APPEND text "choose:\n  leaq slots(%rip), %rdi\n  leaq alternatives(%rip)
                    "  .section .init_array.00101, \"aw\", @init_array\n  .p2align 3\n  .quad choose\n"
                    "  .data\n  .p2align 6\nslots:\n${slots}"
                    "  .section .data.rel.ro, \"aw\", @progbits\n  .p2align 6\nalternatives:\n")
-foreach(level IN LISTS LEVELS)
+foreach(row v2 v3 v4)
+  set(level ${lowest})
+  if(row IN_LIST LEVELS)
+    set(level ${row})
+  endif()
   foreach(name IN LISTS shared)
     string(APPEND text "  .quad ${name}.${level}\n")
   endforeach()
