@@ -174,7 +174,7 @@ std::string dark_ground(const Scenario& scenario, const PropagationPaths& paths,
       const auto wave = diffracted_arrival(ocean, source.z(), depth, range, frequency);
       if (!wave) continue;
       const double more = 2.0 * db_from_power(1.0 + std::norm(wave->amplitude) / rays);
-      if (more > tolerable_db && most == 0.0)
+      if (more > tolerable_db && !(most > tolerable_db))
         nearest = range, dark = surface ? "surface" : "bottom";
       most = std::max(most, more);
     }
