@@ -108,11 +108,9 @@ Baseband narrow_band_sound(const Synthesizer& synthesizer, std::span<const EchoP
   return sound;
 }
 
-Baseband wide_band_sound(const EchoContext& context, const Transmitter& projector,
-                         std::span<const EchoPath> paths, std::span<const Leg> legs,
-                         std::span<const Vec3> phones, const Recording& recording,
-                         double max_doppler) {
-  const Pulse& pulse = *context.pulse;
+std::vector<SoundOfBand> across_band(const EchoContext& context, const Transmitter& projector,
+                                     std::span<const EchoPath> paths, std::span<const Leg> legs,
+                                     const Recording& recording, double max_doppler) {
   const PulseBand of_pulse(context, projector, recording, max_doppler);
   const double centre = of_pulse.centre(), half_band = of_pulse.half_width();
   double longest = 0.0;
@@ -123,20 +121,34 @@ Baseband wide_band_sound(const EchoContext& context, const Transmitter& projecto
   for (const PathWaves& path : waves) of_waves = std::max(of_waves, path.degree());
   if (of_waves > 0) band = chebyshev_nodes(centre, half_band, band.frequencies.size() + of_waves);
 
-  Baseband all;
-  std::vector<EchoPath> filtered(paths.begin(), paths.end());
+  std::vector<SoundOfBand> all;
   for (std::size_t k = 0; k < band.frequencies.size(); ++k) {
     const double f = std::max(1.0, band.frequencies[k]);
-    const BandPart at = of_pulse.part(band, k);
-    for (std::size_t i = 0; i < filtered.size(); ++i) {
-      const PathResponse& response = filtered[i].response;
-      filtered[i].received.amplitude =
-          response.without_pattern * at.pattern.towards(response.bearing, response.elevation) *
-          std::exp(-at.more_nepers_per_metre * waves[i].ray_length) * waves[i].at(f);
+    SoundOfBand& sound = all.emplace_back(SoundOfBand{of_pulse.part(band, k), {}});
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+      const PathResponse& response = paths[i].response;
+      sound.amplitudes.push_back(response.without_pattern *
+                                 sound.part.pattern.towards(response.bearing, response.elevation) *
+                                 std::exp(-sound.part.more_nepers_per_metre * waves[i].ray_length) *
+                                 waves[i].at(f));
     }
-    Baseband sound =
-        narrow_band_sound(Synthesizer(pulse, recording, max_doppler, at.filter), filtered, phones);
-    if (k == 0)
+  }
+  return all;
+}
+
+Baseband wide_band_sound(const EchoContext& context, const Transmitter& projector,
+                         std::span<const EchoPath> paths, std::span<const Leg> legs,
+                         std::span<const Vec3> phones, const Recording& recording,
+                         double max_doppler) {
+  Baseband all;
+  std::vector<EchoPath> filtered(paths.begin(), paths.end());
+  for (const SoundOfBand& one :
+       across_band(context, projector, paths, legs, recording, max_doppler)) {
+    for (std::size_t i = 0; i < filtered.size(); ++i)
+      filtered[i].received.amplitude = one.amplitudes[i];
+    Baseband sound = narrow_band_sound(
+        Synthesizer(*context.pulse, recording, max_doppler, one.part.filter), filtered, phones);
+    if (all.channels == 0)
       all = std::move(sound);
     else
       std::transform(sound.values.begin(), sound.values.end(), all.values.begin(),

@@ -1,6 +1,8 @@
 #pragma once
+#include <complex>
 #include <functional>
 #include <span>
+#include <vector>
 
 #include "sonar/echoes/echo.h"
 #include "sonar/scenario/transmitter.h"
@@ -43,6 +45,20 @@ class PulseBand {
 [[nodiscard]] Baseband narrow_band_sound(const Synthesizer& synthesizer,
                                          std::span<const EchoPath> paths,
                                          std::span<const Vec3> phones);
+
+/// Paths at one of the frequencies that serve a pulse's band.
+struct SoundOfBand {
+  BandPart part;
+  std::vector<std::complex<double>> amplitudes;  ///< [paths]
+};
+
+/// Amplitudes of paths with the water's absorption, the transmitter's pattern and waves at every
+/// frequency that the band needs. \param legs  that the paths belong to
+[[nodiscard]] std::vector<SoundOfBand> across_band(const EchoContext& context,
+                                                   const Transmitter& projector,
+                                                   std::span<const EchoPath> paths,
+                                                   std::span<const Leg> legs,
+                                                   const Recording& recording, double max_doppler);
 
 /// The same with the water's absorption and the transmitter's pattern at every frequency of the
 /// pulse: K pulses, each passed through one of Lagrange's polynomials over the band, each with the
