@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "sonar/noise/noise_spectrum.h"
+#include "sonar/scenario/sampling.h"
 
 namespace asdic::detail {
 
@@ -117,3 +119,22 @@ std::vector<TargetSummary> summarise(const PingRecord& record, const Scenario& s
 }
 
 }  // namespace asdic::detail
+std::string echo_beside_record(const PingRecord& record, const Scenario& scenario,
+                               const Pulse& pulse) {
+  if (scenario.pings.continuous) return "";
+  const double begin = scenario.pings.recording_start, end = end_of_record(scenario);
+  for (const TargetSummary& target : record.summary) {
+    if (target.paths == 0) continue;
+    const double last = target.echo_time + pulse.duration();
+    if (target.echo_time >= begin && last <= end) continue;
+    char text[256];
+    std::snprintf(
+        text, sizeof text,
+        "pings.recording_duration: the loudest echo of target %s is received from %.5g to "
+        "%.5g s after ping %d, whose record holds %g to %g s",
+        target.name.c_str(), target.echo_time, last, record.ping, begin, end);
+    return text;
+  }
+  return "";
+}
+

@@ -1,4 +1,4 @@
-// What the summary of a ping says, against the samples of its record, over products:
+// What the summary and the levels of a ping say, against the samples of its record, over products:
 // pulse × band × paths × motion × phones.
 #include <gtest/gtest.h>
 
@@ -7,6 +7,7 @@
 
 #include "sonar/noise/noise_spectrum.h"
 #include "sonar/ping/ping.h"
+#include "sonar/warnings/warnings.h"
 #include "support/thesis.h"
 
 namespace asdic::detail {
@@ -148,6 +149,31 @@ TEST(SummaryAndSamples, NoiseIsThatOfTheSamples) {
                 db_from_power(power / n), 4.9 * 4.34 / std::sqrt(n))
         << pulse.name;
   }
+}
+
+// An echo that the record does not hold, records that overlap, a line that is steered to endfire.
+TEST(SummaryAndSamples, RecordsThatLackSoundAreWarnedOf) {
+  Scenario s = guide(200.0, pulses[1].settings);
+  EXPECT_EQ(checks::echo_beside_record(s), "");
+  EXPECT_EQ(checks::overlapping_records(s), "");
+  EXPECT_EQ(checks::steered_line(s), "");
+  s.targets[0].track.start.position = {0.0, 400.0, 5.0};  // 0.533 s there and back
+  EXPECT_NE(checks::echo_beside_record(s).find("about 0.533 s"), std::string::npos)
+      << checks::echo_beside_record(s);
+  s.pings.recording_duration = 0.5335;  // 0.9 ms of a pulse of 1 ms
+  EXPECT_NE(checks::echo_beside_record(s), "");
+  s.pings.recording_duration = 0.54;
+  EXPECT_EQ(checks::echo_beside_record(s), "");
+  s.pings.recording_start = 0.534;
+  EXPECT_NE(checks::echo_beside_record(s), "");
+  s.pings.recording_start = 0.0;
+  s.pings.count = 2;
+  s.pings.interval = 0.54;
+  EXPECT_EQ(checks::overlapping_records(s), "");
+  s.pings.interval = 0.5;
+  EXPECT_NE(checks::overlapping_records(s), "");
+  s.pings.continuous = true;
+  EXPECT_EQ(checks::overlapping_records(s), "");
 }
 
 }  // namespace
