@@ -150,58 +150,18 @@ Baseband narrow_band_sound(const Synthesizer& synthesizer, std::span<const EchoP
   return sound;
 }
 
-double change_across_band(const EchoContext& context, const Transmitter& projector,
-                          std::span<const EchoPath> paths, double half_width) {
-  using Amplitudes = std::vector<std::complex<double>>;
-  double most = 0.0;
-  for (const double f : {context.frequency - half_width, context.frequency + half_width}) {
-    const BandPart at = band_part(context, projector, f);
-    const ChangingLegs<Amplitudes> legs(context.paths, paths, [&](const MetLeg& leg) {
-      const bool still = leg.by_waves() && too_narrow_to_change(leg, half_width, tolerable_change);
-      return still ? Amplitudes() : amplitudes_at(context.paths, leg, f);
-    });
-    double energy = 0.0, changed = 0.0;
-    std::vector<std::span<const std::complex<double>>> of_path;
-    for (const EchoPath& path : paths) {
-      of_path.clear();
-      for (const PathOnLeg& on : path.legs) {
-        const Amplitudes* found = legs.of(on);
-        of_path.push_back(found != nullptr ? std::span(*found)
-                                           : std::span<const std::complex<double>>());
-      }
-      const std::complex<double> there =
-          path.response.without_pattern *
-          at.pattern.towards(path.response.bearing, path.response.elevation) *
-          response_of(path, at, of_path);
-      energy += std::norm(path.received.amplitude);
-      changed += std::norm(there - path.received.amplitude);
-    }
-    if (energy > 0.0) most = std::max(most, std::sqrt(changed / energy));
-  }
-  return most;
-}
-
-bool across_the_band(const EchoContext& context, const Transmitter& projector,
-                     std::span<const EchoPath> paths) {
-  const BandOfLosses band = context.scenario().propagation.band;
-  if (band != BandOfLosses::automatic) return band == BandOfLosses::wide;
-  return change_across_band(context, projector, paths, 0.5 * context.pulse->bandwidth_99()) >
-         tolerable_change;
-}
-
-Baseband wide_band_sound(const EchoContext& context, const Transmitter& projector,
-                         std::span<const EchoPath> paths, std::span<const Vec3> phones,
-                         const Recording& recording, double max_doppler) {
+std::vector<SoundOfBand> across_band(const EchoContext& context, const Transmitter& projector,
+                                     std::span<const EchoPath> paths, const Recording& recording,
+                                     double max_doppler) {
   double longest = 0.0;
   for (const EchoPath& path : paths) longest = std::max(longest, path.response.path_length);
   const Band band(context, projector, paths, longest, recording, max_doppler);
-  Baseband all;
-  std::vector<EchoPath> filtered(paths.begin(), paths.end());
+  std::vector<SoundOfBand> all;
   for (std::size_t k = 0; k < band.nodes().frequencies.size(); ++k) {
-    const BandPart at = band.part(k);
+    SoundOfBand& sound = all.emplace_back(SoundOfBand{band.part(k), {}});
     std::unordered_map<const SampledResponse*, std::vector<std::complex<double>>> known;
     std::vector<std::span<const std::complex<double>>> of_path;
-    for (EchoPath& path : filtered) {
+    for (const EchoPath& path : paths) {
       of_path.clear();
       for (const PathOnLeg& on : path.legs) {
         const SampledResponse* leg = band.legs().of(on);
@@ -210,16 +170,29 @@ Baseband wide_band_sound(const EchoContext& context, const Transmitter& projecto
           continue;
         }
         const auto [found, is_new] = known.try_emplace(leg);
-        if (is_new) found->second = leg->at(at.frequency);
+        if (is_new) found->second = leg->at(sound.part.frequency);
         of_path.emplace_back(found->second);
       }
-      path.received.amplitude = path.response.without_pattern *
-                                at.pattern.towards(path.response.bearing, path.response.elevation) *
-                                response_of(path, at, of_path);
+      sound.amplitudes.push_back(
+          path.response.without_pattern *
+          sound.part.pattern.towards(path.response.bearing, path.response.elevation) *
+          response_of(path, sound.part, of_path));
     }
+  }
+  return all;
+}
+
+Baseband wide_band_sound(const EchoContext& context, const Transmitter& projector,
+                         std::span<const EchoPath> paths, std::span<const Vec3> phones,
+                         const Recording& recording, double max_doppler) {
+  Baseband all;
+  std::vector<EchoPath> filtered(paths.begin(), paths.end());
+  for (const SoundOfBand& one : across_band(context, projector, paths, recording, max_doppler)) {
+    for (std::size_t i = 0; i < filtered.size(); ++i)
+      filtered[i].received.amplitude = one.amplitudes[i];
     Baseband sound = narrow_band_sound(
-        Synthesizer(*context.pulse, recording, max_doppler, at.filter), filtered, phones);
-    if (k == 0)
+        Synthesizer(*context.pulse, recording, max_doppler, one.part.filter), filtered, phones);
+    if (all.channels == 0)
       all = std::move(sound);
     else
       std::transform(sound.values.begin(), sound.values.end(), all.values.begin(),

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "sonar/noise/noise_spectrum.h"
+#include "sonar/scenario/sampling.h"
 
 namespace asdic::detail {
 
@@ -63,39 +65,8 @@ void LevelMeter::add(const Baseband& received, double peak_pressure,
   }
 }
 
-namespace {
-
-/// Largest envelope of the echoes of one target as they add at the reference point (of the first
-/// phone, where every phone has its own), over √2. They may cancel: the direct path and its surface
-/// reflection are a period apart or less.
-double peak_of_sum_db(const std::vector<const EchoPath*>& echoes, const Pulse& pulse,
-                      double source_level_db) {
-  double first = infinity, last = -infinity, slowest = 1.0;
-  for (const EchoPath* echo : echoes) {
-    first = std::min(first, echo->received.delay);
-    last = std::max(last, echo->received.delay);
-    slowest = std::min(slowest, echo->received.doppler);
-  }
-  last += pulse.duration() / slowest;
-  const auto steps =
-      static_cast<int>(std::clamp((last - first) * 4.0 * pulse.bandwidth_40db(), 16.0, 4000.0));
-  double peak = 0.0;
-  for (int i = 0; i <= steps; ++i) {
-    const double t = first + (last - first) * i / steps;
-    std::complex<double> sum = 0.0;
-    for (const EchoPath* echo : echoes)
-      sum += echo->received.amplitude *
-             pulse.analytic(echo->received.doppler * (t - echo->received.delay));
-    peak = std::max(peak, std::abs(sum));
-  }
-  return source_level_db + db_from_amplitude(peak);
-}
-
-}  // namespace
-
-std::vector<TargetSummary> summarise(
-    const PingRecord& record, const Scenario& scenario, const Pulse& pulse,
-    const std::function<double(int array, double time)>& reverberation_db) {
+std::vector<TargetSummary> summarise(const PingRecord& record, const Scenario& scenario,
+                                     const Pulse& pulse, const SummaryParts& parts) {
   std::vector<TargetSummary> summary;
   const double source_level_db =
       scenario.transmitters[static_cast<std::size_t>(record.transmitter)].source_level_db;
@@ -115,17 +86,17 @@ std::vector<TargetSummary> summarise(
     row.noise_db = noise_band_db(scenario.noise, pulse.centre_frequency(), pulse.bandwidth_40db());
     if (strongest != nullptr) {
       row.array = strongest->array;
-      std::vector<const EchoPath*> received;
+      std::vector<EchoPath> received;
       for (const EchoPath& echo : record.echoes) {
         if (echo.target != static_cast<int>(i) || echo.array != row.array) continue;
         ++row.paths;
         if (echo.received.channel == Return::all_channels || echo.received.channel == 0)
-          received.push_back(&echo);
+          received.push_back(echo);
       }
       for (const EchoPath& part : record.scattered)
         if (part.target == static_cast<int>(i) && part.array == row.array &&
             (part.received.channel == Return::all_channels || part.received.channel == 0))
-          received.push_back(&part);
+          received.push_back(part);
       const auto many = std::find_if(
           record.many_echoes.begin(), record.many_echoes.end(), [&](const ManyEchoes& one) {
             return one.target == static_cast<int>(i) && one.array == row.array;
@@ -134,11 +105,11 @@ std::vector<TargetSummary> summarise(
       if (!listed) row.paths = static_cast<int>(std::min<std::size_t>(many->pairs, 1'000'000'000));
       row.echo_time = strongest->received.delay;
       row.echo_level_db = strongest->level_db;
-      row.reverberation_db =
-          reverberation_db(row.array, strongest->received.delay +
-                                          0.5 * pulse.duration() / strongest->received.doppler);
-      row.echo_peak_db = listed ? peak_of_sum_db(received, pulse, source_level_db)
-                                : source_level_db + db_from_amplitude(many->peak);
+      row.reverberation_db = parts.reverberation_db(
+          row.array,
+          strongest->received.delay + 0.5 * pulse.duration() / strongest->received.doppler);
+      row.echo_peak_db = source_level_db +
+                         db_from_amplitude(listed ? parts.peak(row.array, received) : many->peak);
       row.signal_excess_db = row.echo_peak_db - db_from_power(power_from_db(row.reverberation_db) +
                                                               power_from_db(row.noise_db));
     }
@@ -148,3 +119,22 @@ std::vector<TargetSummary> summarise(
 }
 
 }  // namespace asdic::detail
+std::string echo_beside_record(const PingRecord& record, const Scenario& scenario,
+                               const Pulse& pulse) {
+  if (scenario.pings.continuous) return "";
+  const double begin = scenario.pings.recording_start, end = end_of_record(scenario);
+  for (const TargetSummary& target : record.summary) {
+    if (target.paths == 0) continue;
+    const double last = target.echo_time + pulse.duration();
+    if (target.echo_time >= begin && last <= end) continue;
+    char text[256];
+    std::snprintf(
+        text, sizeof text,
+        "pings.recording_duration: the loudest echo of target %s is received from %.5g to "
+        "%.5g s after ping %d, whose record holds %g to %g s",
+        target.name.c_str(), target.echo_time, last, record.ping, begin, end);
+    return text;
+  }
+  return "";
+}
+

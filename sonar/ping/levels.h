@@ -1,5 +1,7 @@
 #pragma once
 #include <functional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "sonar/ping/ping_record.h"
@@ -30,12 +32,24 @@ class LevelMeter {
 
   LevelSeries series_;
 };
+/// What summarise() asks for.
+struct SummaryParts {
+  /// Largest envelope of echoes as they add at an array, over the pulse's peak at 1 m.
+  std::function<double(int array, std::span<const EchoPath> echoes)> peak;
+  /// Expected level at an array at a time [dB re 1 µPa].
+  std::function<double(int array, double time)> reverberation_db;
+};
+
 
 /// What a ping's echoes come to, one per target: the strongest path pair, at the array that
-/// receives it, against reverberation and noise at its time. \param reverberation_db  expected
-/// level at an array at a time [dB re 1 µPa]
-[[nodiscard]] std::vector<TargetSummary> summarise(
-    const PingRecord& record, const Scenario& scenario, const Pulse& pulse,
-    const std::function<double(int array, double time)>& reverberation_db);
+/// receives it, against reverberation and noise at its time.
+[[nodiscard]] std::vector<TargetSummary> summarise(const PingRecord& record,
+                                                   const Scenario& scenario, const Pulse& pulse,
+                                                   const SummaryParts& parts);
+
+/// Which echo of a ping its record does not hold whole, as a warning; empty: none. \param pulse
+/// that was sent
+[[nodiscard]] std::string echo_beside_record(const PingRecord& record, const Scenario& scenario,
+                                             const Pulse& pulse);
 
 }  // namespace asdic::detail
