@@ -13,6 +13,7 @@
 #include "raytrace/waves/caustics.h"
 #include "raytrace/waves/cycles.h"
 #include "raytrace/waves/diffraction.h"
+#include "raytrace/waves/put_roughness.h"
 
 namespace asdic::detail {
 namespace {
@@ -164,11 +165,22 @@ double PropagationPaths::speed_at(const Vec3& place) const {
 }
 
 std::shared_ptr<const EigenraySolver> PropagationPaths::solver(const Plane& plane) const {
-  if (layered_) return {std::shared_ptr<void>(), &along_};  // not owned
+  if (layered_) return layered_solver();
   ExactKey own = key(Kept::slice);
   add_to(own, plane, area_ != nullptr);
   return memory_->remember(
       own, [&] { return std::make_shared<EigenraySolver>(environment_of(plane)); },
+      [](const EigenraySolver& made) { return bytes_of_slice(made.environment()); });
+}
+
+std::shared_ptr<const EigenraySolver> PropagationPaths::layered_solver() const {
+  return {std::shared_ptr<void>(), &along_};  // not owned
+}
+
+std::shared_ptr<const EigenraySolver> PropagationPaths::between_mirrors() const {
+  return memory_->remember(
+      key(Kept::slice),
+      [&] { return std::make_shared<EigenraySolver>(without_roughness(along_.environment())); },
       [](const EigenraySolver& made) { return bytes_of_slice(made.environment()); });
 }
 
@@ -197,13 +209,17 @@ Arrivals PropagationPaths::search_plane(const Vec3& from, const Vec3& to, double
                                         const PathLimits& limits) const {
   const double range = separation(from, to).range;
   if (layered_) {
-    Arrivals found = along_.find(from.z(), to.z(), range, frequency, limits);
+    const bool rough = limits.diffraction && is_rough(along_.environment());
+    const std::shared_ptr<const EigenraySolver> solver =
+        rough ? between_mirrors() : layered_solver();
+    Arrivals found = solver->find(from.z(), to.z(), range, frequency, limits);
     if (limits.diffraction) {
-      put_caustics(along_, from.z(), to.z(), range, frequency, limits, found);
-      put_waves(along_, from.z(), to.z(), range, frequency, limits, found,
+      put_caustics(*solver, from.z(), to.z(), range, frequency, limits, found);
+      put_waves(*solver, from.z(), to.z(), range, frequency, limits, found,
                 [&](const CycleNeed& need, const CyclesMaker& make) {
                   return memory_->remember(key(Kept::cycle_waves, need), make);
                 });
+      if (rough) put_roughness(along_.environment(), frequency, limits.faintest, found);
       const OceanMemory kept{*memory_, identity_};
       auto more = diffracted_arrival(along_.environment(), from.z(), to.z(), range, frequency,
                                      found, &kept);
