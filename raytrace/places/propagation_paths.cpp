@@ -8,6 +8,7 @@
 
 #include "core/geometry.h"
 #include "raytrace/ocean/slice.h"
+#include "raytrace/paths/energy_bound.h"
 #include "raytrace/places/followed_path.h"
 #include "raytrace/volume/volume_eigenrays.h"
 #include "raytrace/waves/caustics.h"
@@ -200,9 +201,23 @@ Arrivals PropagationPaths::search(const Vec3& from, const Vec3& to, double frequ
     VolumeSearchReport report;
     Arrivals found = volume_eigenrays(VolumeTracer(*ocean, frequency), from, to, limits, &report);
     if (report.given_up > 0) memory_->count_ended_search();
-    return found;
+    return bounded(std::move(found), from, to, frequency, limits);
   }
-  return search_plane(from, to, frequency, limits);
+  return bounded(search_plane(from, to, frequency, limits), from, to, frequency, limits);
+}
+
+Arrivals PropagationPaths::bounded(Arrivals found, const Vec3& from, const Vec3& to,
+                                   double frequency, const PathLimits& limits) const {
+  // Rays alone have no bound at a caustic: nobody receives those where waves mend them.
+  if (layered_ && !limits.diffraction) return found;
+  ensure_bounded(found, along_.environment(),
+                 {.source_depth = from.z(),
+                  .receiver_depth = to.z(),
+                  .range = separation(from, to).range,
+                  .frequency = frequency,
+                  .layered = layered_,
+                  .in_volume = volume() != nullptr});
+  return found;
 }
 
 Arrivals PropagationPaths::search_plane(const Vec3& from, const Vec3& to, double frequency,
@@ -311,7 +326,7 @@ Arrivals PropagationPaths::followed(std::span<const Arrival> known, const Vec3& 
       found.push_back(std::move(*same));
   }
   sort_by_delay(found);
-  return found;
+  return bounded(std::move(found), from, to, frequency, limits);
 }
 
 }  // namespace asdic::detail
