@@ -10,10 +10,10 @@
 
 namespace asdic::detail {
 
-LevelMeter::LevelMeter(const Recording& recording) {
+LevelMeter::LevelMeter(const Recording& recording, double pulse_duration)
+    : start_(recording.start) {
   const double duration = static_cast<double>(recording.samples) / recording.sample_rate;
-  // 50 ms, and not more than 20 000 steps.
-  series_.time_step = std::max(0.05, duration / 20000.0);
+  series_.time_step = std::max(std::min(pulse_duration, 0.05), duration / 20000.0);
   const auto steps = std::max<std::size_t>(
       1, static_cast<std::size_t>(std::ceil(duration / series_.time_step - 1e-9)));
   for (auto* part : {&series_.echo, &series_.reverberation, &series_.noise})
@@ -24,9 +24,17 @@ void LevelMeter::add_noise(double variance) {
   for (float& value : series_.noise) value += static_cast<float>(variance);
 }
 
-void LevelMeter::add(const Baseband& received, double peak_pressure,
-                     std::vector<float>& into) const {
+void LevelMeter::add_reverberation(const PingReverberation& sea, double peak_pressure,
+                                   double share) {
+  std::vector<float>& into = series_.reverberation;
+  const std::vector<double> power = sea.mean_power(start_, series_.time_step, into.size());
+  for (std::size_t i = 0; i < into.size(); ++i)
+    into[i] += static_cast<float>(0.5 * share * peak_pressure * peak_pressure * power[i]);
+}
+
+void LevelMeter::add_echo(const Baseband& received, double peak_pressure) {
   if (received.channels == 0) return;
+  std::vector<float>& into = series_.echo;
   const auto step_of = [&](std::size_t i) {
     return std::min(into.size() - 1,
                     static_cast<std::size_t>(static_cast<double>(i) / received.sample_rate /
@@ -118,7 +126,6 @@ std::vector<TargetSummary> summarise(const PingRecord& record, const Scenario& s
   return summary;
 }
 
-}  // namespace asdic::detail
 std::string echo_beside_record(const PingRecord& record, const Scenario& scenario,
                                const Pulse& pulse) {
   if (scenario.pings.continuous) return "";
@@ -138,3 +145,4 @@ std::string echo_beside_record(const PingRecord& record, const Scenario& scenari
   return "";
 }
 
+}  // namespace asdic::detail

@@ -395,7 +395,7 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
   // takes back and gives again costs more than what a ping of a study puts into it.
   thread_local std::vector<std::complex<float>> used_before;
   constexpr std::size_t few = std::size_t{1} << 19;
-  LevelMeter levels(record.recording);
+  LevelMeter levels(record.recording, emission.pulse.duration());
   Baseband received, reverberated;           // of all channels
   std::vector<PingReverberation> scattered;  // [arrays]
   for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
@@ -433,6 +433,8 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
     record.timings.patches += watch.lap();
     step(0.5, "reverberation at the phones");
     if (scenario_.reverberation.enabled) {
+      levels.add_reverberation(scattered.back(), peak_pressure,
+                               double(phones.size()) / double(record.phones.size()));
       const Synthesizer& voice = filtered ? *filtered : synthesizer;
       const PhoneGroups groups = reverberation_groups(emission, array, whole, scattered.back());
       record.plane_waves.groups =
@@ -461,7 +463,6 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
   }
   at_step(ping, 0.9, "levels and noise");
   levels.add_echo(received, peak_pressure);
-  levels.add_reverberation(reverberated, peak_pressure);
   if (reverberated.samples == received.samples)
     std::transform(reverberated.values.begin(), reverberated.values.end(), received.values.begin(),
                    received.values.begin(), std::plus<>{});

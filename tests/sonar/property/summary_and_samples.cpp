@@ -151,6 +151,89 @@ TEST(SummaryAndSamples, NoiseIsThatOfTheSamples) {
   }
 }
 
+/// Mean over pings of the samples' mean square, in steps of the levels. [Pa²]
+struct MeanOfPings {
+  std::vector<double> samples, levels;
+  double expected_db = 0.0, from = 0.0, to = 0.0;  // at the echo's time, and that in its pulse
+  double step = 0.0;
+};
+MeanOfPings mean_of(const Scenario& s) {
+  const PingSimulator simulator(s);
+  MeanOfPings mean;
+  double received = 0.0;
+  for (int ping = 1; ping <= simulator.pings(); ++ping) {
+    const PingRecord record = simulator.simulate(ping);
+    const std::size_t steps = record.levels.reverberation.size(), n = record.recording.samples;
+    mean.samples.resize(steps);
+    mean.levels.assign(record.levels.reverberation.begin(), record.levels.reverberation.end());
+    mean.step = record.levels.time_step;
+    std::vector<double> sums(steps, 0.0), counts(steps, 0.0);
+    const TargetSummary& told = record.summary.at(0);
+    const double duration = simulator.pulse().duration();
+    double at_echo = 0.0, count = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double t = double(i) / record.recording.sample_rate;
+      const auto step = std::min(steps - 1, std::size_t(t / mean.step));
+      const float* p = &record.pressure[(n + i) * 2];
+      const double power = 0.5 * (double(p[0]) * double(p[0]) + double(p[1]) * double(p[1]));
+      sums[step] += power;
+      counts[step] += 1.0;
+      if (std::abs(t - told.echo_time - 0.5 * duration) < 0.5 * duration)
+        at_echo += power, count += 1.0;
+    }
+    for (std::size_t k = 0; k < steps; ++k)
+      mean.samples[k] += sums[k] / counts[k] / simulator.pings();
+    received += at_echo / count / simulator.pings();
+    mean.expected_db = told.reverberation_db;
+  }
+  mean.to = db_from_power(received / (micropascal * micropascal));
+  return mean;
+}
+
+// Reverberation of a boundary and of a layer of the water: what is said of it at the echo, and in
+// every step of the levels, against the mean over 100 pings. Each ping's mean over a pulse is
+// exponential, so 4.9 σ over 100 are 4.9·4.34/√100 = 2.1 dB; a cell's middle stands for the cell,
+// and the layer's sheets for its depths, 0.5 dB.
+TEST(SummaryAndSamples, ReverberationIsThatOfTheSamples) {
+  for (const bool layer : {false, true}) {
+    Scenario s = guide(200.0, pulses[1].settings);
+    s.environment.bottom.material = Rigid{};
+    s.propagation.max_surface_bounces = s.propagation.max_bottom_bounces = 0;
+    s.targets[0].strength_db = -200.0;
+    s.reverberation.enabled = true;
+    s.reverberation.surface_scatters = false;
+    if (layer)
+      s.reverberation.volume = {{.top = 60.0, .bottom = 160.0, .strength_db = -60.0}};
+    else
+      s.reverberation.bottom = Lambert{};
+    s.reverberation.bottom_field.statistics.coherence_time = 0.0;
+    s.targets[0].track.start.position = {200.0, 80.0, 120.0};
+    s.pings.count = 100;
+    s.pings.recording_duration = 0.35;
+    s.pings.baseband_rate.reset();
+    const MeanOfPings mean = mean_of(s);
+    EXPECT_NEAR(mean.expected_db, mean.to, 2.6) << (layer ? "layer" : "bottom");
+    double worst = 0.0, sum = 0.0, count = 0.0;
+    const double begins = 2.0 * (layer ? 55.0 : 195.0) / 1500.0;
+    for (std::size_t k = 0; k < mean.levels.size(); ++k) {
+      const double from = double(k) * mean.step;
+      if (from + mean.step < begins) {
+        EXPECT_LT(mean.levels[k], 1e-3 * *std::max_element(mean.levels.begin(), mean.levels.end()))
+            << from;
+        continue;
+      }
+      if (from < begins + 0.002) continue;  // a pulse's window is longer than a step
+      const double off = db_from_power(mean.levels[k] / mean.samples[k]);
+      worst = std::max(worst, std::abs(off));
+      sum += off, count += 1.0;
+    }
+    EXPECT_LT(worst, 2.6) << (layer ? "layer" : "bottom");
+    // Some 100 pulses' lengths of 100 pings: 4.9·4.34/√10000 = 0.2 dB of chance, the rest as
+    // above.
+    EXPECT_NEAR(sum / count, 0.0, 0.5) << (layer ? "layer" : "bottom");
+  }
+}
+
 // An echo that the record does not hold, records that overlap, a line that is steered to endfire.
 TEST(SummaryAndSamples, RecordsThatLackSoundAreWarnedOf) {
   Scenario s = guide(200.0, pulses[1].settings);
