@@ -75,11 +75,12 @@ BandPart band_part(const EchoContext& context, const Transmitter& projector, dou
 
 /// A pulse's band and the few frequencies that serve it, for paths. docs/theory/synthesis.md,
 /// "Across the band"
-class Band {
+class WideBand {
  public:
   /// \param longest  path there and back [m]
-  Band(const EchoContext& context, const Transmitter& projector, std::span<const EchoPath> paths,
-       double longest, const Recording& recording, double max_doppler)
+  WideBand(const EchoContext& context, const Transmitter& projector,
+           std::span<const EchoPath> paths, double longest, const Recording& recording,
+           double max_doppler)
       : context_(context),
         projector_(projector),
         centre_(context.pulse->centre_frequency()),
@@ -128,7 +129,7 @@ class Band {
 std::vector<BandPart> band_parts(const EchoContext& context, const Transmitter& projector,
                                  std::span<const EchoPath> paths, double longest,
                                  const Recording& recording, double max_doppler) {
-  const Band band(context, projector, paths, longest, recording, max_doppler);
+  const WideBand band(context, projector, paths, longest, recording, max_doppler);
   std::vector<BandPart> parts;
   for (std::size_t k = 0; k < band.nodes().frequencies.size(); ++k) parts.push_back(band.part(k));
   return parts;
@@ -155,7 +156,7 @@ std::vector<SoundOfBand> across_band(const EchoContext& context, const Transmitt
                                      double max_doppler) {
   double longest = 0.0;
   for (const EchoPath& path : paths) longest = std::max(longest, path.response.path_length);
-  const Band band(context, projector, paths, longest, recording, max_doppler);
+  const WideBand band(context, projector, paths, longest, recording, max_doppler);
   std::vector<SoundOfBand> all;
   for (std::size_t k = 0; k < band.nodes().frequencies.size(); ++k) {
     SoundOfBand& sound = all.emplace_back(SoundOfBand{band.part(k), {}});
