@@ -151,6 +151,45 @@ Baseband narrow_band_sound(const Synthesizer& synthesizer, std::span<const EchoP
   return sound;
 }
 
+double change_across_band(const EchoContext& context, const Transmitter& projector,
+                          std::span<const EchoPath> paths, double half_width) {
+  using Amplitudes = std::vector<std::complex<double>>;
+  double most = 0.0;
+  for (const double f : {context.frequency - half_width, context.frequency + half_width}) {
+    const BandPart at = band_part(context, projector, f);
+    const ChangingLegs<Amplitudes> legs(context.paths, paths, [&](const MetLeg& leg) {
+      const bool still = leg.by_waves() && too_narrow_to_change(leg, half_width, tolerable_change);
+      return still ? Amplitudes() : amplitudes_at(context.paths, leg, f);
+    });
+    double energy = 0.0, changed = 0.0;
+    std::vector<std::span<const std::complex<double>>> of_path;
+    for (const EchoPath& path : paths) {
+      of_path.clear();
+      for (const PathOnLeg& on : path.legs) {
+        const Amplitudes* found = legs.of(on);
+        of_path.push_back(found != nullptr ? std::span(*found)
+                                           : std::span<const std::complex<double>>());
+      }
+      const std::complex<double> there =
+          path.response.without_pattern *
+          at.pattern.towards(path.response.bearing, path.response.elevation) *
+          response_of(path, at, of_path);
+      energy += std::norm(path.received.amplitude);
+      changed += std::norm(there - path.received.amplitude);
+    }
+    if (energy > 0.0) most = std::max(most, std::sqrt(changed / energy));
+  }
+  return most;
+}
+
+bool across_the_band(const EchoContext& context, const Transmitter& projector,
+                     std::span<const EchoPath> paths) {
+  const BandOfLosses band = context.scenario().propagation.band;
+  if (band != BandOfLosses::automatic) return band == BandOfLosses::wide;
+  return change_across_band(context, projector, paths, 0.5 * context.pulse->bandwidth_99()) >
+         tolerable_change;
+}
+
 std::vector<SoundOfBand> across_band(const EchoContext& context, const Transmitter& projector,
                                      std::span<const EchoPath> paths, const Recording& recording,
                                      double max_doppler) {
