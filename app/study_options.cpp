@@ -205,8 +205,9 @@ int report(const StudyOrder& order, const study::StudyOutcome& outcome, bool qui
     print(fmt::format("{} of them skipped; /faults in the file says why\n", outcome.skipped));
   if (outcome.estimate) print(estimate_text(*outcome.estimate) + '\n');
   if (outcome.left_out > 0)
-    print(fmt::format("{} left out of {}: it is not known there (NaN or infinite)\n",
-                      count_of(outcome.left_out, "realisation"), outcome.question));
+    print(fmt::format("{} left out of {}: it is not known there (NaN or infinite){}\n",
+                      count_of(outcome.left_out, "realisation"), outcome.question,
+                      outcome.unknown.empty() ? "" : ": " + outcome.unknown));
   for (const std::string& note : outcome.notes) print("note: " + note + '\n');
   if (order.run.until) print(until_text(outcome) + '\n');
   print(fmt::format("{}: {}{}\n", file,

@@ -422,6 +422,7 @@ void RunningEstimate::take(const Row& row, const std::vector<double>& values) {
   if (!row.valid || !std::isfinite(values[column_])) {
     if (row.valid) ++left_out_;
     mean_.leave_out(row.index, weight);
+    if (row.valid && unknown_.empty()) unknown_ = row.unknown;
     return;
   }
   mean_.add(row.index, values[column_], weight);

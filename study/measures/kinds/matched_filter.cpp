@@ -11,6 +11,7 @@ void MatchedFilterAnswer::of_target(const MeasuredPing& ping, std::size_t target
     answer = filter_answer(*ping.simulator, *ping.record, plan.matched_filter, plan.array,
                            static_cast<int>(target), plan.false_alarm_probability(),
                            ping.expected.empty() ? ExpectedAnswer{} : ping.expected[target]);
+  to.explain(answer.unknown);
   if (plan.detection && plan.detection->by == DetectionPlan::By::matched_filter) {
     to.add("detected", "1", "matched filter over its threshold in the echo; NaN: not known",
            over_threshold(answer));
