@@ -67,7 +67,10 @@ class EchoFinder {
     const bool exact = scenario_.propagation.exact_per_phone;
     Way home = way_back(out, exact ? 0 : -1);
     const bool many = home.leg.arrivals.size() > context_.most_pairs / out.leg.arrivals.size();
-    if (many) result.many = all_pairs(out, home);
+    if (many)
+      result.many = all_pairs(out, home);
+    else
+      draw_scattering(out, home);
     for (std::size_t n = 0; n < (exact ? phones_.size() : 1); ++n) {
       if (n > 0) home = way_back(out, static_cast<int>(n));
       if (many) {
@@ -191,6 +194,7 @@ class EchoFinder {
                TargetEchoes& result) const {
     const int channel = back.leg.channel;
     const Carried receiver = this->receiver(channel);
+    const std::vector<RoughPath> rough_home = rough_paths(back.leg.arrivals, 2);
     const auto there = across_the_band(source.position, out),
                home = across_the_band(out.end.position, back);
     for (std::size_t i = 0; i < out.leg.arrivals.size(); ++i) {
@@ -201,8 +205,7 @@ class EchoFinder {
         if (!pair || (bounces_.surface > fewest_bounces && pair->home.time > latest_)) continue;
         const std::size_t first = result.scattered.size();
         std::vector<EchoPath> echoes = answer(*pair, receiver, channel);
-        scatter(*pair, echoes, parts_of(out.leg.arrivals.size() * back.leg.arrivals.size()),
-                result.scattered);
+        scatter(*pair, echoes, rough_out_[i], rough_home[j], result.scattered);
         name(i, j, std::span(result.scattered).subspan(first));
         name(i, j, echoes);
         if (there != nullptr) {
@@ -322,14 +325,35 @@ class EchoFinder {
     return found;
   }
 
-  /// Into how many parts what is scattered about a pair of paths is drawn, of so many pairs.
-  static int parts_of(std::size_t pairs) {
+  /// Draws what rough boundaries make of the paths there, once for all phones, and into how many
+  /// parts.
+  void draw_scattering(const Way& out, const Way& back) {
     constexpr std::size_t most = 4096;  // of a target
-    return static_cast<int>(std::clamp<std::size_t>(most / std::max<std::size_t>(pairs, 1), 2, 16));
+    const std::size_t pairs = out.leg.arrivals.size() * back.leg.arrivals.size();
+    parts_ =
+        static_cast<int>(std::clamp<std::size_t>(most / std::max<std::size_t>(pairs, 1), 2, 16));
+    rough_out_ = rough_paths(out.leg.arrivals, 1);
+  }
+
+  /// \param leg  1: there; 2: home
+  [[nodiscard]] std::vector<RoughPath> rough_paths(const Arrivals& paths, std::uint64_t leg) const {
+    std::vector<RoughPath> found;
+    for (const Arrival& path : paths)
+      found.push_back(rough_path(scenario_.environment, path, context_.frequency, parts_,
+                                 scenario_.seed,
+                                 mixed(mixed(entity(), leg), scatter_history(path))));
+    return found;
+  }
+
+  /// A number that names the transmitter and the target.
+  [[nodiscard]] std::uint64_t entity() const {
+    return mixed(static_cast<std::uint64_t>(geometry_.sent().transmitter),
+                 static_cast<std::uint64_t>(index_));
   }
 
   /// What rough boundaries scatter about a pair of paths. \param echoes  of the pair's own
-  void scatter(const TwoWayPaths& pair, std::span<const EchoPath> echoes, int parts,
+  void scatter(const TwoWayPaths& pair, std::span<const EchoPath> echoes,
+               const RoughPath& rough_out, const RoughPath& rough_home,
                std::vector<EchoPath>& found) const {
     const Arrival &there = pair.there.path, &home = pair.home.path;
     const double mean = std::norm(there.amplitude * home.amplitude);
@@ -337,21 +361,20 @@ class EchoFinder {
     if (!(scattered > 1e-9 * mean)) return;
     const auto place = [](const Kinematics& end) { return Vec2(end.position.head<2>()); };
     const ScatteredLeg legs[] = {
-        {&there, place(pair.source), pair.there.way.leg.bearing, geometry_.time()},
-        {&home, place(pair.target), pair.home.way.leg.bearing, geometry_.time() + pair.there.time}};
+        {&rough_out, place(pair.source), pair.there.way.leg.bearing, geometry_.time()},
+        {&rough_home, place(pair.target), pair.home.way.leg.bearing,
+         geometry_.time() + pair.there.time}};
+    const std::uint64_t name =
+        mixed(mixed(entity(), scatter_history(there)), scatter_history(home));
     const double c = context_.paths.speed_at(pair.home.way.end.position);
     const double pressure = std::sqrt(scattered);
     for (const EchoPath& echo : echoes) {
-      std::uint64_t entity = mixed(static_cast<std::uint64_t>(geometry_.sent().transmitter),
-                                   static_cast<std::uint64_t>(index_));
-      for (const std::uint64_t more : {scatter_history(there), scatter_history(home)})
-        entity = mixed(entity, more);
       // what the glint itself sends back, and the transmitter to there
       const std::complex<double> of_glint = echo.glint,
                                  pattern = context_.pattern.towards(echo.response.bearing,
                                                                     echo.response.elevation);
       for (const ScatteredPart& part : forward_scatter(
-               scenario_.environment, legs, context_.frequency, parts, scenario_.seed, entity)) {
+               scenario_.environment, legs, context_.frequency, parts_, scenario_.seed, name)) {
         EchoPath one = echo;
         one.curve.reset();
         one.received.delay += part.delay;
@@ -560,7 +583,9 @@ class EchoFinder {
   double latest_;    // end of the record [s]
   Bounces bounces_;  // that are followed
   PathLimits limits_;
-  MovingPaths moving_, closely_;  // closely: delays as they change during a pulse
+  MovingPaths moving_, closely_;      // closely: delays as they change during a pulse
+  int parts_ = 1;                     // in which what is scattered about a pair is drawn
+  std::vector<RoughPath> rough_out_;  // of the paths there
 };
 
 }  // namespace

@@ -75,11 +75,12 @@ BandPart band_part(const EchoContext& context, const Transmitter& projector, dou
 
 /// A pulse's band and the few frequencies that serve it, for paths. docs/theory/synthesis.md,
 /// "Across the band"
-class Band {
+class WideBand {
  public:
   /// \param longest  path there and back [m]
-  Band(const EchoContext& context, const Transmitter& projector, std::span<const EchoPath> paths,
-       double longest, const Recording& recording, double max_doppler)
+  WideBand(const EchoContext& context, const Transmitter& projector,
+           std::span<const EchoPath> paths, double longest, const Recording& recording,
+           double max_doppler)
       : context_(context),
         projector_(projector),
         centre_(context.pulse->centre_frequency()),
@@ -128,7 +129,7 @@ class Band {
 std::vector<BandPart> band_parts(const EchoContext& context, const Transmitter& projector,
                                  std::span<const EchoPath> paths, double longest,
                                  const Recording& recording, double max_doppler) {
-  const Band band(context, projector, paths, longest, recording, max_doppler);
+  const WideBand band(context, projector, paths, longest, recording, max_doppler);
   std::vector<BandPart> parts;
   for (std::size_t k = 0; k < band.nodes().frequencies.size(); ++k) parts.push_back(band.part(k));
   return parts;
@@ -189,19 +190,18 @@ bool across_the_band(const EchoContext& context, const Transmitter& projector,
          tolerable_change;
 }
 
-Baseband wide_band_sound(const EchoContext& context, const Transmitter& projector,
-                         std::span<const EchoPath> paths, std::span<const Vec3> phones,
-                         const Recording& recording, double max_doppler) {
+std::vector<SoundOfBand> across_band(const EchoContext& context, const Transmitter& projector,
+                                     std::span<const EchoPath> paths, const Recording& recording,
+                                     double max_doppler) {
   double longest = 0.0;
   for (const EchoPath& path : paths) longest = std::max(longest, path.response.path_length);
-  const Band band(context, projector, paths, longest, recording, max_doppler);
-  Baseband all;
-  std::vector<EchoPath> filtered(paths.begin(), paths.end());
+  const WideBand band(context, projector, paths, longest, recording, max_doppler);
+  std::vector<SoundOfBand> all;
   for (std::size_t k = 0; k < band.nodes().frequencies.size(); ++k) {
-    const BandPart at = band.part(k);
+    SoundOfBand& sound = all.emplace_back(SoundOfBand{band.part(k), {}});
     std::unordered_map<const SampledResponse*, std::vector<std::complex<double>>> known;
     std::vector<std::span<const std::complex<double>>> of_path;
-    for (EchoPath& path : filtered) {
+    for (const EchoPath& path : paths) {
       of_path.clear();
       for (const PathOnLeg& on : path.legs) {
         const SampledResponse* leg = band.legs().of(on);
@@ -210,16 +210,29 @@ Baseband wide_band_sound(const EchoContext& context, const Transmitter& projecto
           continue;
         }
         const auto [found, is_new] = known.try_emplace(leg);
-        if (is_new) found->second = leg->at(at.frequency);
+        if (is_new) found->second = leg->at(sound.part.frequency);
         of_path.emplace_back(found->second);
       }
-      path.received.amplitude = path.response.without_pattern *
-                                at.pattern.towards(path.response.bearing, path.response.elevation) *
-                                response_of(path, at, of_path);
+      sound.amplitudes.push_back(
+          path.response.without_pattern *
+          sound.part.pattern.towards(path.response.bearing, path.response.elevation) *
+          response_of(path, sound.part, of_path));
     }
+  }
+  return all;
+}
+
+Baseband wide_band_sound(const EchoContext& context, const Transmitter& projector,
+                         std::span<const EchoPath> paths, std::span<const Vec3> phones,
+                         const Recording& recording, double max_doppler) {
+  Baseband all;
+  std::vector<EchoPath> filtered(paths.begin(), paths.end());
+  for (const SoundOfBand& one : across_band(context, projector, paths, recording, max_doppler)) {
+    for (std::size_t i = 0; i < filtered.size(); ++i)
+      filtered[i].received.amplitude = one.amplitudes[i];
     Baseband sound = narrow_band_sound(
-        Synthesizer(*context.pulse, recording, max_doppler, at.filter), filtered, phones);
-    if (k == 0)
+        Synthesizer(*context.pulse, recording, max_doppler, one.part.filter), filtered, phones);
+    if (all.channels == 0)
       all = std::move(sound);
     else
       std::transform(sound.values.begin(), sound.values.end(), all.values.begin(),

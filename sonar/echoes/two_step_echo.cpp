@@ -432,13 +432,13 @@ Baseband two_step_echo(const EchoContext& context, const ManyEchoes& many,
 }
 
 double two_step_peak(const EchoContext& context, const ManyEchoes& many, const Recording& recording,
-                     double max_doppler) {
+                     double max_doppler, std::span<const BandPart> band) {
   const std::vector<Vec3> one = {Vec3::Zero()};
   const bool phone = context.scenario().propagation.exact_per_phone;
   std::vector<Vec3> received_at = one;
   if (phone) received_at[0] = context.geometry.phones(context.array).front();
   const Baseband received =
-      two_step_echo(context, many, {received_at, phone}, recording, max_doppler);
+      two_step_echo(context, many, {received_at, phone}, recording, max_doppler, band);
   return received.channels > 0 ? largest_envelope(received, 0) : 0.0;
 }
 

@@ -32,6 +32,7 @@ struct TwoStepReceivers {
 /// The largest envelope at the array's reference point (at its first phone, where every phone has
 /// paths of its own by the scenario's wish), over the pulse's peak at 1 m.
 [[nodiscard]] double two_step_peak(const EchoContext& context, const ManyEchoes& many,
-                                   const Recording& recording, double max_doppler);
+                                   const Recording& recording, double max_doppler,
+                                   std::span<const BandPart> band = {});
 
 }  // namespace asdic::detail

@@ -15,6 +15,7 @@
 #include "reverb/power/reverberation_streams.h"
 #include "sonar/echoes/direct_blast.h"
 #include "sonar/echoes/echo.h"
+#include "sonar/echoes/peak_of_echoes.h"
 #include "sonar/echoes/sparse_sound.h"
 #include "sonar/echoes/two_step_echo.h"
 #include "sonar/paths/enough_bounces.h"
@@ -131,6 +132,7 @@ PingRecord PingSimulator::blank_record(const PingGeometry& geometry) const {
 
 /// Echoes, source → target × target → array, and the ping itself on its way to the array.
 std::vector<EchoPath> PingSimulator::sparse_returns(const EchoContext& context,
+                                                    const Emission& emission,
                                                     PingRecord& record) const {
   std::vector<EchoPath> received;
   for (std::size_t i = 0; i < scenario_.targets.size(); ++i) {
@@ -139,7 +141,9 @@ std::vector<EchoPath> PingSimulator::sparse_returns(const EchoContext& context,
     TargetEchoes found = target_echoes(context, static_cast<int>(i));
     record.bounces.include(found.bounces);
     if (found.many) {
-      found.many->peak = two_step_peak(context, *found.many, record.recording, max_doppler_);
+      found.many->peak =
+          two_step_peak(context, *found.many, record.recording, max_doppler_,
+                        band_of(context, emission, record, found.echoes, found.many->last));
       record.many_echoes.push_back(*found.many);
       record.echoes.insert(record.echoes.end(), found.echoes.begin(), found.echoes.end());
       found.echoes.clear();
@@ -163,6 +167,37 @@ std::vector<EchoPath> PingSimulator::sparse_returns(const EchoContext& context,
   return received;
 }
 
+std::vector<BandPart> PingSimulator::band_of(const EchoContext& context, const Emission& emission,
+                                             const PingRecord& record,
+                                             std::span<const EchoPath> loudest, double last) const {
+  if (!across_the_band(context, emission.projector, loudest)) return {};
+  return band_parts(context, emission.projector, loudest,
+                    1.1 * paths_->speed_at(record.platform.position) * last, record.recording,
+                    max_doppler_);
+}
+
+double PingSimulator::peak_of(const Emission& emission, int array, std::span<const EchoPath> echoes,
+                              PingRecord& record) const {
+  const Recording recording = recording_of(scenario_);
+  std::vector<EchoesOfBand> band;
+  const auto add = [&](std::vector<std::complex<double>> amplitudes,
+                       const std::function<double(double)>& filter) {
+    band.push_back(
+        {recorded_pulse(emission.pulse, recording, max_doppler_, filter), std::move(amplitudes)});
+  };
+  const EchoContext context = echo_context(emission, array, record);
+  if (across_the_band(context, emission.projector, echoes)) {
+    for (SoundOfBand& one :
+         across_band(context, emission.projector, echoes, recording, max_doppler_))
+      add(std::move(one.amplitudes), one.part.filter);
+  } else {
+    std::vector<std::complex<double>> amplitudes;
+    for (const EchoPath& echo : echoes) amplitudes.push_back(echo.received.amplitude);
+    add(std::move(amplitudes), {});
+  }
+  return peak_of_echoes(emission.pulse, echoes, band);
+}
+
 /// Of the targets whose pairs of paths are too many to be gridded one by one.
 void PingSimulator::add_many_echoes(const EchoContext& context, const Emission& emission,
                                     std::span<const Vec3> phones, const PingRecord& record,
@@ -174,11 +209,7 @@ void PingSimulator::add_many_echoes(const EchoContext& context, const Emission& 
                  [&](const EchoPath& echo) {
                    return echo.target == many.target && echo.array == many.array;
                  });
-    std::vector<BandPart> band;
-    if (across_the_band(context, emission.projector, loudest))
-      band = band_parts(context, emission.projector, loudest,
-                        1.1 * paths_->speed_at(record.platform.position) * many.last,
-                        record.recording, max_doppler_);
+    const std::vector<BandPart> band = band_of(context, emission, record, loudest, many.last);
     const Baseband more = two_step_echo(context, many, {phones, many.at_phones}, record.recording,
                                         max_doppler_, band);
     if (more.channels > 0) add_resampled(more, received);
@@ -293,11 +324,14 @@ PingRecord PingSimulator::levels(int ping) const {
   for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
     EchoContext context = echo_context(emission, static_cast<int>(a), record);
     context.listens = false;
-    sparse_returns(context, record);
+    sparse_returns(context, emission, record);
   }
   record.timings.eigenrays = watch.lap();
   std::map<int, PingReverberation> received;  // by array, where an echo is strongest
-  record.summary = summarise(record, scenario_, emission.pulse, [&](int array, double time) {
+  const auto peak = [&](int array, std::span<const EchoPath> echoes) {
+    return peak_of(emission, array, echoes, record);
+  };
+  const auto reverberation_db = [&](int array, double time) {
     auto at = received.find(array);
     if (at == received.end()) {
       MemoryBudget budget = budget_;
@@ -308,7 +342,8 @@ PingRecord PingSimulator::levels(int ping) const {
     }
     record.bounces.include(at->second.bounces());
     return at->second.expected_db(time);
-  });
+  };
+  record.summary = summarise(record, scenario_, emission.pulse, {peak, reverberation_db});
   record.timings.rays = watch.lap();
   record.ended_searches = paths_->memory().ended_searches();
   return record;
@@ -328,7 +363,7 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
   std::vector<bool> wide;                     // [arrays] received across the band
   for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
     const EchoContext context = echo_context(emission, static_cast<int>(a), record);
-    sparse.push_back(sparse_returns(context, record));
+    sparse.push_back(sparse_returns(context, emission, record));
     wide.push_back(across_the_band(context, emission.projector, sparse.back()));
   }
   const double longest = 2.0 * emission.pulse.duration() + 1.0;  // of what a return sounds [s]
@@ -372,7 +407,7 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
   // takes back and gives again costs more than what a ping of a study puts into it.
   thread_local std::vector<std::complex<float>> used_before;
   constexpr std::size_t few = std::size_t{1} << 19;
-  LevelMeter levels(record.recording);
+  LevelMeter levels(record.recording, emission.pulse.duration());
   Baseband received, reverberated;           // of all channels
   std::vector<PingReverberation> scattered;  // [arrays]
   for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
@@ -410,6 +445,8 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
     record.timings.patches += watch.lap();
     step(0.5, "reverberation at the phones");
     if (scenario_.reverberation.enabled) {
+      levels.add_reverberation(scattered.back(), peak_pressure,
+                               double(phones.size()) / double(record.phones.size()));
       const Synthesizer& voice = filtered ? *filtered : synthesizer;
       const PhoneGroups groups = reverberation_groups(emission, array, whole, scattered.back());
       record.plane_waves.groups =
@@ -438,7 +475,6 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
   }
   at_step(ping, 0.9, "levels and noise");
   levels.add_echo(received, peak_pressure);
-  levels.add_reverberation(reverberated, peak_pressure);
   if (reverberated.samples == received.samples)
     std::transform(reverberated.values.begin(), reverberated.values.end(), received.values.begin(),
                    received.values.begin(), std::plus<>{});
@@ -453,9 +489,16 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
 
   levels.add_noise(noise_.recorded_power());
   record.levels = levels.series();
-  record.summary = summarise(record, scenario_, emission.pulse, [&](int array, double time) {
-    return scattered[static_cast<std::size_t>(array)].expected_db(time);
-  });
+  record.summary =
+      summarise(record, scenario_, emission.pulse,
+                {.peak =
+                     [&](int array, std::span<const EchoPath> echoes) {
+                       return peak_of(emission, array, echoes, record);
+                     },
+                 .reverberation_db =
+                     [&](int array, double time) {
+                       return scattered[static_cast<std::size_t>(array)].expected_db(time);
+                     }});
   record.timings.noise = watch.lap();
   record.ended_searches = paths_->memory().ended_searches();
   return record;

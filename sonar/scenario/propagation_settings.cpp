@@ -13,7 +13,7 @@ void PropagationSettings::describe(Fields& field) {
   field(or_word("max_bottom_bounces", "auto"), max_bottom_bounces, 0, 1000,
         "of a path; auto: as many as there is sound in");
   field("max_launch_angle", max_launch_angle,
-        AngleQuantity{.noun = "angle", .low_deg = 0.0, .high_deg = 90.0, .above = true},
+        AngleQuantity{.noun = "angle", .low_deg = 0.01, .high_deg = 90.0},
         "of a path, from the horizontal");
   field("direct_blast", direct_blast,
         "whether arrays on other platforms receive the ping itself, without a target");

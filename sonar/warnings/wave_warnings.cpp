@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/text.h"
 #include "raytrace/warnings/warnings.h"
 #include "raytrace/waves/diffraction.h"
 #include "raytrace/waves/focus.h"
@@ -53,27 +54,26 @@ AcrossThePulse across_the_pulse(const PropagationPaths& paths, const MetLeg& leg
 
 /// "" where the amplitudes of the centre will do, or those across the band are known.
 std::string line_of(const AcrossThePulse& waves, const std::string& whose) {
-  char text[300] = "", how_far[32] = "gone";
+  std::string text;
+  char how_far[32] = "gone";
   constexpr double tolerable_change_db = 1.0, tolerable_share = 0.12, tolerable_error = 0.03;
   if (std::isfinite(waves.change_db))
     std::snprintf(how_far, sizeof how_far, "up to %.2g dB off", waves.change_db);
   if (waves.change > tolerable_share)
-    std::snprintf(text, sizeof text,
-                  "propagation.band: what reaches %.60s off its boundaries has the reflection of "
-                  "the pulse's centre; at the edges of its band %.0f %% of the pressure differ; "
-                  "\"wide\" follows it",
-                  whose.c_str(), 100.0 * waves.change);
+    text = formatted(
+        "propagation.band: what reaches %s off its boundaries has the reflection of the pulse's "
+        "centre; at the edges of its band %.0f %% of the pressure differ; \"wide\" follows it",
+        whose.c_str(), 100.0 * waves.change);
   if (waves.change_db > tolerable_change_db)
-    std::snprintf(
-        text, sizeof text,
-        "propagation.band: what reaches %.60s where no ray does, or at a caustic, has the "
+    text = formatted(
+        "propagation.band: what reaches %s where no ray does, or at a caustic, has the "
         "amplitude of the pulse's centre; at the edges of its band it is %s; \"wide\" follows it",
         whose.c_str(), how_far);
   if (waves.error > tolerable_error)
-    std::snprintf(text, sizeof text,
-                  "propagation.band: what reaches %.60s changes faster across the pulse than %d "
-                  "frequencies tell: errors up to %.2g of its greatest amplitude",
-                  whose.c_str(), int(most_wave_frequencies), waves.error);
+    text = formatted(
+        "propagation.band: what reaches %s changes faster across the pulse than %d frequencies "
+        "tell: errors up to %.2g of its greatest amplitude",
+        whose.c_str(), int(most_wave_frequencies), waves.error);
   return text;
 }
 
@@ -81,10 +81,8 @@ std::string line_of(const AcrossThePulse& waves, const std::string& whose) {
 std::string line_of_share(double share, const std::string& whose, const char* how) {
   constexpr double tolerable_share = 0.25;
   if (!(share > tolerable_share)) return "";
-  char text[320];
-  std::snprintf(text, sizeof text, "propagation: %.0f %% of the sound to or from %.60s %s",
-                100.0 * share, whose.c_str(), how);
-  return text;
+  return formatted("propagation: %.0f %% of the sound to or from %s %s", 100.0 * share,
+                   whose.c_str(), how);
 }
 constexpr char beside_corners[] =
     "turns so often beside corners of the sound-speed profile that rays have its phase wrong by a "
@@ -194,7 +192,7 @@ std::string dark_ground(const Scenario& scenario, const PropagationPaths& paths,
       const auto wave = diffracted_arrival(ocean, source.z(), depth, range, frequency);
       if (!wave) continue;
       const double more = 2.0 * db_from_power(1.0 + std::norm(wave->amplitude) / rays);
-      if (more > tolerable_db && most == 0.0)
+      if (more > tolerable_db && !(most > tolerable_db))
         nearest = range, dark = surface ? "surface" : "bottom";
       most = std::max(most, more);
     }
