@@ -132,8 +132,9 @@ std::vector<EchoPath> PingSimulator::sparse_returns(const EchoContext& context,
     TargetEchoes found = target_echoes(context, static_cast<int>(i));
     record.bounces.include(found.bounces);
     if (found.many) {
-      found.many->peak = two_step_peak(context, *found.many, record.recording, max_doppler_,
-                                       band_of(context, emission, record, *found.many));
+      found.many->peak =
+          two_step_peak(context, *found.many, record.recording, max_doppler_,
+                        band_of(context, emission, record, found.echoes, found.many->last));
       record.many_echoes.push_back(*found.many);
       record.echoes.insert(record.echoes.end(), found.echoes.begin(), found.echoes.end());
       found.echoes.clear();
@@ -159,15 +160,11 @@ std::vector<EchoPath> PingSimulator::sparse_returns(const EchoContext& context,
 
 std::vector<BandPart> PingSimulator::band_of(const EchoContext& context, const Emission& emission,
                                              const PingRecord& record,
-                                             const ManyEchoes& many) const {
-  std::vector<BandPart> band;
-  if (!scenario_.propagation.wide_band) return band;
-  const PulseBand of_pulse(context, emission.projector, record.recording, max_doppler_);
-  const double longest = 1.1 * paths_->speed_at(record.platform.position) * many.last;
-  const BandNodes nodes = of_pulse.nodes(longest);
-  for (std::size_t k = 0; k < nodes.frequencies.size(); ++k)
-    band.push_back(of_pulse.part(nodes, k));
-  return band;
+                                             std::span<const EchoPath> loudest, double last) const {
+  if (!across_the_band(context, emission.projector, loudest)) return {};
+  return band_parts(context, emission.projector, loudest,
+                    1.1 * paths_->speed_at(record.platform.position) * last, record.recording,
+                    max_doppler_);
 }
 
 double PingSimulator::peak_of(const Emission& emission, int array, std::span<const EchoPath> echoes,
@@ -179,10 +176,10 @@ double PingSimulator::peak_of(const Emission& emission, int array, std::span<con
     band.push_back(
         {recorded_pulse(emission.pulse, recording, max_doppler_, filter), std::move(amplitudes)});
   };
-  if (scenario_.propagation.wide_band) {
-    const EchoContext context = echo_context(emission, array, record);
+  const EchoContext context = echo_context(emission, array, record);
+  if (across_the_band(context, emission.projector, echoes)) {
     for (SoundOfBand& one :
-         across_band(context, emission.projector, echoes, record.legs, recording, max_doppler_))
+         across_band(context, emission.projector, echoes, recording, max_doppler_))
       add(std::move(one.amplitudes), one.part.filter);
   } else {
     std::vector<std::complex<double>> amplitudes;
@@ -198,7 +195,12 @@ void PingSimulator::add_many_echoes(const EchoContext& context, const Emission& 
                                     Baseband& received) const {
   for (const ManyEchoes& many : record.many_echoes) {
     if (many.array != context.array) continue;
-    const std::vector<BandPart> band = band_of(context, emission, record, many);
+    std::vector<EchoPath> loudest;
+    std::copy_if(record.echoes.begin(), record.echoes.end(), std::back_inserter(loudest),
+                 [&](const EchoPath& echo) {
+                   return echo.target == many.target && echo.array == many.array;
+                 });
+    const std::vector<BandPart> band = band_of(context, emission, record, loudest, many.last);
     const Baseband more = two_step_echo(context, many, {phones, many.at_phones}, record.recording,
                                         max_doppler_, band);
     if (more.channels > 0) add_resampled(more, received);
@@ -349,9 +351,12 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
   MemoryBudget budget = budget_;
   budget.take(record_need(scenario_, most_samples()));
   std::vector<std::vector<EchoPath>> sparse;  // [arrays]
-  for (std::size_t a = 0; a < scenario_.arrays.size(); ++a)
-    sparse.push_back(
-        sparse_returns(echo_context(emission, static_cast<int>(a), record), emission, record));
+  std::vector<bool> wide;                     // [arrays] received across the band
+  for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
+    const EchoContext context = echo_context(emission, static_cast<int>(a), record);
+    sparse.push_back(sparse_returns(context, emission, record));
+    wide.push_back(across_the_band(context, emission.projector, sparse.back()));
+  }
   const double longest = 2.0 * emission.pulse.duration() + 1.0;  // of what a return sounds [s]
   for (std::vector<EchoPath>& of_array : sparse)
     std::erase_if(of_array, [&](const EchoPath& echo) {
@@ -367,7 +372,7 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
   const Synthesizer synthesizer(emission.pulse, record.recording, max_doppler_, paths_->memory());
   std::optional<ReverberationBand> band;
   std::optional<Synthesizer> filtered;
-  if (scenario_.propagation.wide_band && scenario_.reverberation.enabled) {
+  if (scenario_.propagation.band == BandOfLosses::wide && scenario_.reverberation.enabled) {
     band.emplace(scenario_, *paths_, reverberation_->laws(), emission.projector, record.platform,
                  geometry.source_heading(), emission.pulse.centre_frequency(),
                  synthesizer.half_band(), end_of(record.recording));
@@ -401,10 +406,9 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
     step(0.0, "echoes");
     const std::vector<Vec3>& phones = geometry.phones(array);
     const EchoContext context = echo_context(emission, array, record);
-    Baseband of_array = scenario_.propagation.wide_band
-                            ? wide_band_sound(context, emission.projector, sparse[a], record.legs,
-                                              phones, record.recording, max_doppler_)
-                            : narrow_band_sound(synthesizer, sparse[a], phones);
+    Baseband of_array = wide[a] ? wide_band_sound(context, emission.projector, sparse[a], phones,
+                                                  record.recording, max_doppler_)
+                                : narrow_band_sound(synthesizer, sparse[a], phones);
     for (const ManyEchoes& many : record.many_echoes)
       if (many.array == array) budget.take(two_step_need(many, of_array));
     add_many_echoes(context, emission, phones, record, of_array);
@@ -496,8 +500,8 @@ PingSimulator::MeanSea PingSimulator::mean_sea(int ping, int array) const {
     refuse("array.electronics", "receivers with a response of their own", "what is summed without");
   if (scenario_.pings.continuous || scenario_.pings.blanking)
     refuse("pings", "a stream, or blanking", "pings by themselves, to sum what they receive");
-  if (scenario_.propagation.wide_band)
-    refuse("propagation.wide_band", "true", "one amplitude for the band, to sum reverberation");
+  if (scenario_.propagation.band == BandOfLosses::wide)
+    refuse("propagation.band", "\"wide\"", "one amplitude for the band, to sum reverberation");
   if (!scenario_.interferers.empty())
     refuse("interferer", "ships that are heard", "none, to sum what is received");
   const Emission emission = emit(transmission(ping), ping);

@@ -156,10 +156,11 @@ class PingSimulator {
   [[nodiscard]] double peak_of(const Emission& emission, int array,
                                std::span<const EchoPath> echoes, PingRecord& record) const;
   [[nodiscard]] Emission emit(const Transmission& sent, int ping) const;
-  /// How echoes by many paths are taken apart across the band; empty: the centre stands for it.
+  /// Parts of the band by which echoes of many paths are received; empty: the centre stands for it.
+  /// \param loudest  of these paths   \param last  time at which one of them is received [s]
   [[nodiscard]] std::vector<BandPart> band_of(const EchoContext& context, const Emission& emission,
                                               const PingRecord& record,
-                                              const ManyEchoes& many) const;
+                                              std::span<const EchoPath> loudest, double last) const;
   void add_many_echoes(const EchoContext& context, const Emission& emission,
                        std::span<const Vec3> phones, const PingRecord& record,
                        Baseband& received) const;

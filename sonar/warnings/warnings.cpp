@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/geometry.h"
+#include "core/text.h"
 #include "raytrace/paths/eigenrays.h"
 #include "raytrace/places/propagation_paths.h"
 #include "raytrace/volume/area_volume.h"
@@ -195,14 +196,12 @@ std::string reverberation_plane_waves(const Scenario& scenario) {
     const double error = one_group(listening(geometry, 0), front, point).error;
     if (error <= reverberation_periods) continue;
     const double far = front.length * error / reverberation_periods;
-    char text[320];
-    std::snprintf(text, sizeof text,
-                  "reverberation.synthesis: drawn from its covariance, it is plane waves for array "
-                  "%s: the first are up to %.2g periods off at its ends, 1/16 after %.2g s; with "
-                  "\"automatic\" they are not",
-                  array_of(scenario, 0).name.c_str(), error,
-                  2.0 * far / speed_at(scenario, receives.position));
-    return text;
+    return formatted(
+        "reverberation.synthesis: drawn from its covariance, it is plane waves for array "
+        "%s: the first are up to %.2g periods off at its ends, 1/16 after %.2g s; with "
+        "\"automatic\" they are not",
+        array_of(scenario, 0).name.c_str(), error,
+        2.0 * far / speed_at(scenario, receives.position));
   }
   return "";
 }
@@ -239,13 +238,11 @@ std::string noise_of_a_bent_line(const Scenario& scenario) {
           change, coherence_change(motion, bent[i].second, quarter, 2.0 * pi * highest / c, field));
     constexpr double received = 0.1;
     if (change <= received) continue;
-    char text[256];
-    std::snprintf(text, sizeof text,
-                  "noise.coherence: array %s turns, and in each block of %.2g s its noise has the "
-                  "shape of the block's middle: the coherence of two phones changes by up to %.2g "
-                  "at %g Hz meanwhile",
-                  array_of(scenario, array).name.c_str(), block, change, highest);
-    return text;
+    return formatted(
+        "noise.coherence: array %s turns, and in each block of %.2g s its noise has the "
+        "shape of the block's middle: the coherence of two phones changes by up to %.2g "
+        "at %g Hz meanwhile",
+        array_of(scenario, array).name.c_str(), block, change, highest);
   }
   return "";
 }
@@ -265,13 +262,10 @@ std::string beyond_the_map(const Scenario& scenario, double heard) {
       if (edge.distance < nearest.distance) nearest = edge;
     }
   if (nearest.distance >= heard) return "";
-  char text[320];
-  std::snprintf(
-      text, sizeof text,
-      "environment.area: sound is followed to %.3g km, and %.100s ends %.3g km away at %.0f "
+  return formatted(
+      "environment.area: sound is followed to %.3g km, and %s ends %.3g km away at %.0f "
       "degrees; beyond it its edge goes on",
       heard / 1000.0, nearest.map.c_str(), nearest.distance / 1000.0, degrees(nearest.bearing));
-  return text;
 }
 
 std::string wind_elsewhere(const Scenario& scenario) {
@@ -290,12 +284,10 @@ std::string wind_elsewhere(const Scenario& scenario) {
       where = scenario.platforms[array.platform].name;
     }
   if (std::abs(worst) < felt) return "";
-  char text[240];
-  std::snprintf(text, sizeof text,
-                "environment.area.wind: noise is that of %.3g m/s, over the first array when the "
-                "scenario starts; over platform %.40s it comes to be %.3g m/s",
-                scenario.wind_speed, where.c_str(), scenario.wind_speed + worst);
-  return text;
+  return formatted(
+      "environment.area.wind: noise is that of %.3g m/s, over the first array when the "
+      "scenario starts; over platform %s it comes to be %.3g m/s",
+      scenario.wind_speed, where.c_str(), scenario.wind_speed + worst);
 }
 
 std::string far_from_the_origin(const Scenario& scenario) {
@@ -401,13 +393,11 @@ std::string left_out_diffraction(const Scenario& scenario) {
     for (const Arrival& ray : EigenraySolver(ocean).find(source.z(), place.z(), range, frequency,
                                                          limits_of(scenario.propagation)))
       if (ray.bottom_bounces == 0) return "";
-    char text[240];
-    std::snprintf(text, sizeof text,
-                  "propagation: no ray reaches target \"%.60s\" without the bottom, and %.3g Hz "
-                  "over %.3g km are too dear for the wave equation: sound out of ducts and into "
-                  "shadows is left out",
-                  target.name.c_str(), frequency, range / 1000.0);
-    return text;
+    return formatted(
+        "propagation: no ray reaches target \"%s\" without the bottom, and %.3g Hz "
+        "over %.3g km are too dear for the wave equation: sound out of ducts and into "
+        "shadows is left out",
+        target.name.c_str(), frequency, range / 1000.0);
   }
   return "";
 }
