@@ -44,14 +44,11 @@ CycleWaves::CycleWaves(const Environment& ocean, double frequency, double source
   fade_ = fade_radians / furthest;
   const double widest = std::sqrt(2.0 * column.largest_wavenumber() / furthest);
   least_slope_ = flattest_zones * widest * widest * widest;
-  const double upper = (source_is_upper_ ? column.at_source() : column.at_receiver()).slope,
-               lower = (source_is_upper_ ? column.at_receiver() : column.at_source()).slope;
-  // Across the slowest depth a ray that is horizontal at one end turns before the other, whatever
-  // the slopes: in a surface duct above a thermocline, say.
-  turns_ = column.slowest_is_between()  ? Turns::between
-           : upper > 0.0 && lower > 0.0 ? Turns::above
-           : upper < 0.0 && lower < 0.0 ? Turns::below
-                                        : Turns::between;
+  // Where a ray that is horizontal at one end turns: on that side of the slowest depth. Slopes do
+  // not tell, they are nothing where the speed is greatest.
+  turns_ = column.ends_are_above()   ? Turns::above
+           : column.ends_are_below() ? Turns::below
+                                     : Turns::between;
   affordable_ = double(column.layers()) * double(window_.count) <= most_cycle_steps;
   if (!affordable_) return;
   constexpr std::size_t piece = 16;
