@@ -50,8 +50,8 @@ PropagationCase of_ocean_and_run(const TomlValue& document, const std::filesyste
   run.title = root.text("title", "");
   run.source_depths.clear();
   TomlTable table = run_of(root);
-  run.frequency = table.number(
-      "frequency", {.noun = "frequency", .unit = "Hz", .low = 0.0, .high = 1e8, .above = true});
+  run.frequency =
+      table.number("frequency", {.noun = "frequency", .unit = "Hz", .low = 1e-3, .high = 1e8});
   TomlTable environment = root.table("environment");
   static_cast<void>(environment.has("wind_speed"));  // of a sonar
   run.origin = scenario::read_origin(environment);

@@ -38,7 +38,8 @@ void ScattererStatistics::describe(Fields& field) {
   bool frozen = std::isinf(coherence_time);
   const double otherwise = frozen ? 0.0 : coherence_time;
   std::optional<double> time = frozen ? std::nullopt : std::optional(coherence_time);
-  field("coherence_time", time, {.noun = "time", .unit = "s", .low = 0.0, .high = 1e9},
+  field("coherence_time", time,
+        {.noun = "time", .unit = "s", .low = 1e-6, .high = 1e9, .or_zero = true},
         "after which a scatterer's weight is another; 0: with every ping");
   if (time) frozen = false;
   field("frozen", frozen, "whether weights never change");
@@ -49,8 +50,7 @@ void ScattererStatistics::describe(Fields& field) {
         "of the gamma-distributed texture");
   if (k_shape || field.exhaustive())
     field("correlation_length", correlation_length,
-          {.noun = "length", .unit = "m", .low = 0.0, .high = 1e6, .above = true},
-          "of the texture");
+          {.noun = "length", .unit = "m", .low = 1e-3, .high = 1e6}, "of the texture");
 }
 
 std::uint64_t ScattererKey::entity(std::uint64_t identity) const noexcept {
