@@ -78,7 +78,7 @@ class Recorder {
                       : ""));
   }
 
-  [[nodiscard]] const std::string& stream() const { return stream_; }
+  [[nodiscard]] std::uint64_t stream() const { return stream_; }
   [[nodiscard]] double heard() const { return static_cast<double>(samples_) / source_rate_; }
   [[nodiscard]] bool closed() const { return wav_ && wav_->closed(); }
 
@@ -168,7 +168,7 @@ class Recorder {
   }
 
   const ListenOptions& options_;
-  std::string stream_;
+  std::uint64_t stream_;
   std::size_t channels_ = 1, components_ = 1, block_samples_ = 1;
   double source_rate_ = 1.0, rate_ = 1.0, scale_ = 1.0;
   std::uint64_t samples_ = 0;
@@ -192,8 +192,8 @@ int listen(const ListenOptions& options) {
   constexpr double a_while = 0.1;  // [s]
   bool another = false;
   while (!stopped() && !another && !receiver.ended() && (!recorder || recorder->more())) {
-    const std::string_view packet = socket.next(a_while);
-    if (packet.empty()) continue;
+    const serve::Datagram packet = socket.next(a_while);
+    if (packet.bytes.empty()) continue;
     receiver.take(packet, [&](serve::StreamReceiver::Block&& block) {
       if (!recorder) recorder.emplace(options, *receiver.about());
       another = another || receiver.about()->stream != recorder->stream();
@@ -212,6 +212,8 @@ int listen(const ListenOptions& options) {
                    count_of(counts.blocks + counts.lost_blocks, "block"),
                    counts.lost == 0 ? "none" : std::to_string(counts.lost),
                    count_of(counts.packets + counts.lost, "packet")));
+  if (counts.others > 0)
+    tell("asdic listen: " + count_of(counts.others, "packet") + " of other senders left aside");
   return 0;
 }
 

@@ -181,6 +181,7 @@ int ping(const PingOptions& options) {
   }
   progress.reset();
   writer.finish(done == count);
+  if (!report.echo_beside_record().empty()) warn({report.echo_beside_record()});
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   if (!options.quiet && done > 0) {
     print(report.text(wall.count()));

@@ -9,7 +9,8 @@
         print(block.time, block.samples.shape, block.lost)
 
 A client's `listen` with "deliver": "udp" or "ring" makes it begin. `about` is what the latest
-descriptor says: sample_rate, carrier, positions of the phones.
+descriptor says: sample_rate, carrier, positions of the phones. By UDP a stream is one sender's, with
+one number: whatever else comes to the port is left aside, counted and reported.
 """
 import collections
 import ipaddress
@@ -18,10 +19,12 @@ import mmap
 import socket
 import struct
 import time
+import warnings
 
 import numpy as np
 
-HEADER = struct.Struct("<2sBBIIHH")  # "AS", version, kind, sequence, block, fragment, fragments
+HEADER = struct.Struct("<2sBBIIHHQ")  # "AS", version, kind, sequence, block, fragment, fragments, stream
+VERSION = 2
 DESCRIPTOR, BLOCK = 0, 1
 PAYLOAD = 1408
 TYPES = {"float32": "<f4", "complex64": "<c8"}
@@ -30,6 +33,7 @@ LONGEST_GAP = 65536  # blocks or packets
 LONGEST_DELAY = 4096  # packets
 LONGEST_DESCRIPTOR = 4096  # fragments
 MOST_DESCRIPTORS = 4       # that are not whole
+SILENCE = 5.0              # of the stream's sender, after which another one's may be joined [s]
 
 
 class Block:
@@ -70,45 +74,69 @@ def _read(text):
 class Assembler:
     """Packets in, blocks out, in order; without sockets. Whatever bytes it is fed, memory stays bounded.
 
+    It is bound to the sender and the number of the stream that it joins at a descriptor. The sender's
+    next stream is taken where it begins; another sender's when the stream has ended, or when nothing
+    of it came for SILENCE seconds.
+
     packets, lost, reordered, duplicates, foreign   packets so far
+    others                                          packets of other streams so far
     blocks, lost_blocks                             blocks so far
     """
 
     def __init__(self):
-        self.packets = self.lost = self.reordered = self.duplicates = self.foreign = 0
+        self.packets = self.lost = self.reordered = self.duplicates = self.foreign = self.others = 0
         self.blocks = self.lost_blocks = 0
-        self.about, self.ended = None, False
-        self._over = None       # the stream that has ended
+        self.about, self.ended, self.sender = None, False, None
+        self._stream, self._over = None, False  # its number; whether it has ended
+        self._heard = 0.0       # when something of it came last [s]
         self._partial = {}      # number → [first sequence, fragments, {fragment: bytes}]
-        self._descriptors = {}  # first sequence → [fragments, {fragment: bytes}]
+        self._own, self._strange = {}, {}  # descriptors: key → [fragments, {fragment: bytes}]
         self._next = self._before = self._begin = self._latest = 0
+        self._anchor = 0, 0     # block of the latest descriptor, and sequence after it
         self._seen = set()
 
-    def take(self, packet):
-        """→ list of Block that are complete by it"""
+    def take(self, packet, sender=None, now=0.0):
+        """sender: whatever tells senders apart; now: by a clock that never goes back [s]
+        → list of Block that are complete by it
+        """
         if not HEADER.size < len(packet) <= HEADER.size + PAYLOAD:
             self.foreign += 1
             return []
-        magic, version, kind, sequence, block, fragment, fragments = HEADER.unpack_from(packet)
+        magic, version, kind, sequence, block, fragment, fragments, stream = HEADER.unpack_from(packet)
         payload = packet[HEADER.size:]
-        if (magic != b"AS" or version != 1 or kind > 1 or fragment >= fragments
+        if (magic != b"AS" or version != VERSION or kind > 1 or fragment >= fragments
                 or (fragment + 1 < fragments and len(payload) != PAYLOAD)):
             self.foreign += 1
             return []
         first = (sequence - fragment) % 0x100000000
-        if self.about is None or self._is_far(sequence):  # of a server that began anew: its descriptor tells
+        piece = first, fragment, fragments, payload
+        if self.about is None or (sender, stream) != (self.sender, self._stream):
+            if self.about is not None and not self._over:
+                self.others += sender != self.sender
+                self.foreign += sender == self.sender and kind == BLOCK
             if kind == DESCRIPTOR:
-                return self._describe(first, fragment, fragments, payload)
-            self.foreign += self.about is not None
+                about = self._descriptor(self._strange, (sender, stream), *piece)
+                if about and not about.get("ended") and about["stream"] == f"{stream:016x}" and \
+                        self._may_join(first, sender, now):
+                    self._join(about, first, fragments, sender, stream, now)
             return []
-        if not self._is_new(sequence):
+        self._heard = now
+        far = self._is_far(sequence)  # after a long gap its next descriptor tells
+        if not far and not self._is_new(sequence):
             return []
         if kind == DESCRIPTOR:
-            return self._describe(first, fragment, fragments, payload)
-        return self._put(block, first, fragment, fragments, payload)
+            about = self._descriptor(self._own, None, *piece)
+            return self._described(about, first, fragments, far) if about else []
+        self.foreign += far
+        return [] if far else self._put(block, *piece)
 
     def _is_far(self, sequence):
         return not -LONGEST_DELAY < _ahead(sequence, self._latest) <= LONGEST_GAP
+
+    def _may_join(self, first, sender, now):
+        if self.about is None or self._over or now > self._heard + SILENCE:
+            return True
+        return sender == self.sender and (_ahead(first, self._latest) > 0 or self._is_far(first))
 
     def _is_new(self, sequence):
         step = _ahead(sequence, self._latest)
@@ -130,49 +158,77 @@ class Assembler:
         self.packets += 1
         return True
 
-    def _describe(self, first, fragment, fragments, payload):
+    def _descriptor(self, waiting, whose, first, fragment, fragments, payload):
+        """→ what it says, once it is whole; else None"""
         if fragments > LONGEST_DESCRIPTOR:
             self.foreign += 1
-            return []
-        known, pieces = self._descriptors.setdefault(first, (fragments, {}))
+            return None
+        known, pieces = waiting.setdefault((whose, first), (fragments, {}))
         if known != fragments:
             self.foreign += 1
-            return []
+            return None
         pieces.setdefault(fragment, payload)
         if len(pieces) < fragments:
-            while len(self._descriptors) > MOST_DESCRIPTORS:
-                self._descriptors.pop(next(iter(self._descriptors)))
-            return []
-        del self._descriptors[first]
+            while len(waiting) > MOST_DESCRIPTORS:
+                waiting.pop(next(iter(waiting)))
+            return None
+        del waiting[whose, first]
         about = _read(b"".join(pieces[i] for i in range(fragments)))
-        if about is None:
-            self.foreign += 1
+        self.foreign += about is None
+        return about
+
+    def _join(self, about, first, fragments, sender, stream, now):
+        """A stream begins, or is joined: what was sent before its descriptor does not belong to it."""
+        after = (first + fragments) % 0x100000000
+        if self.about is None or sender != self.sender or self._is_far(first):
+            self._latest = (first - 1) % 0x100000000
+        self.lost += max(_ahead(first, self._latest) - 1, 0)
+        self._seen = {(first + i) % 0x100000000 for i in range(fragments)}
+        self._latest = (after - 1) % 0x100000000
+        self.packets += fragments
+        self._partial.clear()
+        self._own.clear()
+        self._strange.clear()
+        self.sender, self._stream, self._heard = sender, stream, now
+        self._next, self._before, self._begin = about["block"], 0, first
+        self.ended = self._over = False
+        self._tell(about, after)
+
+    def _tell(self, about, after):
+        self.about, self._type, self._anchor = about, np.dtype(TYPES[about["type"]]), (about["block"], after)
+        self._row = about["channels"] * self._type.itemsize
+        self._longest = self._row * about["block_samples"]
+
+    def _described(self, about, first, fragments, far):
+        """Its own descriptor."""
+        if about["stream"] != self.about["stream"] or self._over:
             return []
-        given = []
-        if about.get("ended"):
-            if self.about is not None and about["stream"] == self.about["stream"] != self._over:
-                given = self._pass(about["block"])
-                self._partial.clear()
-                self.ended, self._over = True, about["stream"]
-            return given
-        if self.about is None or about["stream"] != self.about["stream"]:
-            anew = self.about is None or self._is_far(first)
-            self._partial.clear()
-            self._next, self._before, self._begin, self.ended = about["block"], 0, first, False
-            if anew:
-                self._seen = {(first + i) % 0x100000000 for i in range(fragments)}
-                self._latest = (first + fragments - 1) % 0x100000000
-                self.packets += fragments
-        elif about["block"] > self._next + LONGEST_GAP:  # it was away for long
+        given, after = [], (first + fragments) % 0x100000000
+        if far:
+            if about["block"] < self._next:
+                self.foreign += 1
+                return []
+            self.lost += max(_ahead(first, self._latest) - 1, 0)
+            self.packets += fragments
+            self._seen, self._begin = {(first + i) % 0x100000000 for i in range(fragments)}, first
+            self._latest = (after - 1) % 0x100000000
+        if far or about.get("ended"):
             given = self._pass(about["block"])
-        self.about, self._type = about, np.dtype(TYPES[about["type"]])
-        self._longest = about["channels"] * about["block_samples"] * self._type.itemsize
+        if about.get("ended"):
+            self._partial.clear()
+            self.ended = self._over = True
+        elif about["block"] >= self._anchor[0]:  # not one that comes late
+            self._tell(about, after)
         return given
 
     def _put(self, block, first, fragment, fragments, payload):
         number = self._next + _ahead(block, self._next % 0x100000000)
+        size = (fragments - 1) * PAYLOAD + (len(payload) if fragment + 1 == fragments else 1)
+        whole = -(-self._longest // PAYLOAD)  # packets of a block
+        known, after = self._anchor
         if (not self._next <= number <= self._next + LONGEST_GAP or _ahead(first, self._begin) < 0
-                or (fragments - 1) * PAYLOAD >= self._longest):
+                or (number - known) * whole > max(_ahead(first, after), 0)  # so many were sent before it
+                or size > self._longest or (fragment + 1 == fragments and size % self._row)):
             self.foreign += 1
             return []
         given = self._pass(number - WINDOW + 1) if number >= self._next + WINDOW else []
@@ -188,11 +244,6 @@ class Assembler:
         while self._next in self._partial and len(self._partial[self._next][2]) == self._partial[self._next][1]:
             _, fragments, pieces = self._partial.pop(self._next)
             content = b"".join(pieces[i] for i in range(fragments))
-            row = self.about["channels"] * self._type.itemsize
-            if len(content) % row:
-                self.foreign += 1
-                self._lose(1)
-                continue
             samples = np.frombuffer(content, self._type).reshape(self.about["channels"], -1)
             after = (self._next - self.about["block"]) * self.about["block_samples"]
             given.append(Block(self._next, self.about["time"] + after / self.about["sample_rate"], samples,
@@ -242,6 +293,7 @@ class Stream:
         self._end.settimeout(timeout)
         self.assembler = Assembler()
         self._ready = collections.deque()
+        self._warned = False
 
     @property
     def about(self):
@@ -256,7 +308,16 @@ class Stream:
         while not self._ready:
             if self.assembler.ended:
                 raise StopIteration
-            self._ready.extend(self.assembler.take(self._end.recv(65536)))
+            packet, sender = self._end.recvfrom(65536)
+            bound, others = self.assembler.sender, self.assembler.others
+            self._ready.extend(self.assembler.take(packet, sender, time.monotonic()))
+            if bound not in (None, self.assembler.sender):
+                warnings.warn(f"the stream comes from {sender[0]}:{sender[1]} now, before from "
+                              f"{bound[0]}:{bound[1]}", stacklevel=2)
+            elif self.assembler.others > others and not self._warned:
+                self._warned = True
+                warnings.warn(f"another stream comes to this port, from {sender[0]}:{sender[1]}; "
+                              f"it is left aside", stacklevel=2)
         return self._ready.popleft()
 
     def close(self):

@@ -109,19 +109,21 @@ void LiveScenario::forget_before(double time) noexcept {
   if (since_) since_ = std::max(*since_, time);
 }
 
-void LiveScenario::update(const TomlValue& fields, double now) {
+bool LiveScenario::update(const TomlValue& fields, double now) {
   TomlValue document = document_;
   Changes changes = changes_;
   const auto changed = apply_update(
       fields,
       {.scenario = state_.scenario, .data = data_, .limits = limits_, .now = now, .since = since_},
       document);
+  if (changed.empty()) return false;
   for (const std::string& section : changed)
     set_change(changes, section, inline_toml(*find_at(document, section)));
   state_ = read_for_client(changes, fields, document);
   document_ = std::move(document);
   changes_ = std::move(changes);
   changed_ = std::max(changed_, number_said(fields, "time").value_or(now));
+  return true;
 }
 
 std::string LiveScenario::elevation_override(int transmitter, double elevation) const {

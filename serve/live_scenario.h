@@ -55,8 +55,9 @@ class LiveScenario {
   [[nodiscard]] const TomlValue& document() const noexcept { return document_; }
 
   /// The command `update`: all of it, or nothing. \param fields  of the command
-  /// \param now  at which the positions are meant where it does not say [s] \throws Refusal
-  void update(const TomlValue& fields, double now);
+  /// \param now  at which the positions are meant where it does not say [s]
+  /// \return false where everything is already as it wants: nothing changes then \throws Refusal
+  bool update(const TomlValue& fields, double now);
   /// From now on tracks keep where things were, from a time on: what is received now was sent and
   /// struck before. Samples follow without gaps, and their rate stays. \throws Refusal
   void listen(double since);

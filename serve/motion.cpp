@@ -1,6 +1,7 @@
 #include "serve/motion.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/quantities.h"
@@ -54,6 +55,25 @@ TomlValue::Array past(const Track& track, double since, double until) {
   return line;
 }
 
+bool has_place(const TomlValue& table) {
+  constexpr std::array keys{"position", "waypoints", "range"};
+  return std::ranges::any_of(keys, [&](const char* key) { return table.find(key) != nullptr; });
+}
+
+/// Whether a track has this place and velocity at a time, but for the rounding of decimal numbers,
+/// and no turn after it.
+bool goes_on(const Track& track, double time, const Kinematics& state) {
+  const Kinematics there = track.at(time);
+  const double off = (state.position - there.position).norm(),
+               faster = (state.velocity - there.velocity).norm();
+  if (off > 1e-9 + 1e-14 * state.position.norm() || faster > 1e-12) return false;
+  if (track.waypoints.empty() || time >= track.waypoints.back().time) return true;
+  const Waypoint& before =
+      *(track.waypoints.end() - std::min<std::ptrdiff_t>(2, std::ssize(track.waypoints)));
+  const double left = horizon(there, time);
+  return before.time <= time && track.waypoints.back().time - time > (1.0 - 1e-9) * left;
+}
+
 /// A place and a velocity as the file has them: in a place, or from there on in a straight line,
 /// after where it was before.
 void set_kinematics(const Kinematics& state, double time, TomlValue::Array line, TomlValue& table) {
@@ -88,7 +108,7 @@ void set_kinematics(const Kinematics& state, double time, TomlValue& table) {
   set_kinematics(state, time, {}, table);
 }
 
-void set_motion(TomlTable& wanted, const Track& now, const MotionTime& when, TomlValue& table) {
+bool set_motion(TomlTable& wanted, const Track& now, const MotionTime& when, TomlValue& table) {
   const double time = when.time;
   TomlValue::Array before;
   if (when.since) before = past(now, *when.since, time);
@@ -103,7 +123,7 @@ void set_motion(TomlTable& wanted, const Track& now, const MotionTime& when, Tom
     }
     forget_motion(table);
     set_key(table, "waypoints", {.data = std::move(points), .origin = ""});
-    return;
+    return true;
   }
   Kinematics state = now.at(time);
   state.position = wanted.vector("position", quantity::coordinate, state.position);
@@ -114,7 +134,9 @@ void set_motion(TomlTable& wanted, const Track& now, const MotionTime& when, Tom
   } else if (wanted.has("heading_deg") || wanted.has("speed")) {
     state.velocity = on_course(wanted, state.velocity);
   }
+  if (has_place(table) && goes_on(now, time, state)) return false;
   set_kinematics(state, time, std::move(before), table);
+  return true;
 }
 
 }  // namespace asdic::detail::serve

@@ -24,9 +24,9 @@ struct MotionTime {
 };
 
 /// Writes it into the scenario's table of that thing, in place of what stands there. What is not
-/// said goes on as it was. \param now  its track so far   \throws InputError naming the command's
-/// key
-void set_motion(TomlTable& wanted, const Track& now, const MotionTime& when, TomlValue& table);
+/// said goes on as it was. \param now  its track so far   \return false where it moves like that
+/// already: then nothing is written \throws InputError naming the command's key
+bool set_motion(TomlTable& wanted, const Track& now, const MotionTime& when, TomlValue& table);
 
 /// A place and a velocity as the file has them: in a place, or from there on in a straight line.
 void set_kinematics(const Kinematics& state, double time, TomlValue& table);

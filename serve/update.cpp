@@ -54,6 +54,46 @@ struct Update {
   std::vector<std::string> changed = {};  ///< sections
 };
 
+/// Whether two values are the same: numbers by what they amount to, tables in whatever order.
+bool same_value(const TomlValue& a, const TomlValue& b) {
+  const auto number = [](const TomlValue& one) -> std::optional<double> {
+    if (const auto* real = std::get_if<double>(&one.data)) return *real;
+    if (const auto* whole = std::get_if<std::int64_t>(&one.data)) return double(*whole);
+    return std::nullopt;
+  };
+  if (const auto x = number(a), y = number(b); x || y) return x == y;
+  if (a.data.index() != b.data.index()) return false;
+  if (const auto* items = std::get_if<TomlValue::Array>(&a.data))
+    return std::ranges::equal(*items, std::get<TomlValue::Array>(b.data), same_value);
+  if (const auto* entries = a.table())
+    return entries->size() == std::get<TomlValue::Table>(b.data).size() &&
+           std::ranges::all_of(*entries, [&](const TomlEntry& entry) {
+             const TomlValue* other = b.find(entry.key);
+             return other != nullptr && same_value(entry.value, *other);
+           });
+  if (const auto* text = std::get_if<std::string>(&a.data))
+    return *text == std::get<std::string>(b.data);
+  if (const auto* flag = std::get_if<bool>(&a.data)) return *flag == std::get<bool>(b.data);
+  return true;
+}
+
+/// Whether a section is what it was; what a file holds may have changed under its name.
+bool is_as_before(const TomlValue& document, const TomlValue& before, const std::string& section) {
+  const TomlValue *now = find_at(document, section), *then = find_at(before, section);
+  return now != nullptr && then != nullptr && now->find("file") == nullptr &&
+         same_value(*now, *then);
+}
+
+/// Writes all targets as a list in which each has its name.
+void name_targets(const Scenario& scenario, TomlValue& document) {
+  TomlValue::Array targets;
+  for (TomlValue* table : tables_of(document, "target")) {
+    set_key(*table, "name", {.data = scenario.targets[targets.size()].name, .origin = ""});
+    targets.push_back(*table);
+  }
+  if (!targets.empty()) set_key(document, "target", {.data = std::move(targets), .origin = ""});
+}
+
 /// Places that were given from the platform's start stay where they are when that moves.
 void fix_targets(Update& to) {
   const std::vector<TomlValue*> tables = tables_of(to.document, "target");
@@ -68,7 +108,7 @@ void fix_targets(Update& to) {
 }
 
 void update_platforms(Update& to) {
-  fix_targets(to);
+  bool moved = false;
   const std::vector<TomlValue*> tables = tables_of(to.document, "platform");
   const auto& platforms = to.context.scenario.platforms;
   for (TomlTable& wanted : to.reader.one_or_more("platform")) {
@@ -77,10 +117,11 @@ void update_platforms(Update& to) {
       wanted.finish();  // a key that is misspelt is told as that
       throw wanted.fault("position", "a position, velocity, heading_deg, speed or waypoints");
     }
-    set_motion(wanted, platforms[i].track, {.time = to.time, .since = to.context.since},
-               *tables[i]);
+    moved |= set_motion(wanted, platforms[i].track, {.time = to.time, .since = to.context.since},
+                        *tables[i]);
     wanted.finish();
   }
+  if (moved) fix_targets(to);
 }
 
 /// Keys of a table, and tables within it, that there are with some kinds of it alone.
@@ -169,11 +210,7 @@ void update_target(TomlTable& wanted, const TomlValue& values, const Update& to,
 
 void update_targets(Update& to) {
   TomlValue::Array targets;
-  for (TomlValue* table : tables_of(to.document, "target")) {
-    const std::string& name = to.context.scenario.targets[targets.size()].name;
-    set_key(*table, "name", {.data = name, .origin = ""});
-    targets.push_back(*table);
-  }
+  for (const TomlValue* table : tables_of(to.document, "target")) targets.push_back(*table);
   const std::vector<const TomlValue*> given = tables_of(to.fields, "targets");
   std::size_t place = 0;
   for (TomlTable& wanted : to.reader.one_or_more("targets"))
@@ -230,6 +267,8 @@ std::vector<std::string> update_all(const TomlValue& fields, const UpdateContext
                                     TomlValue& document) {
   TomlTable reader(fields);
   const double time = reader.number("time", quantity::time, context.now);
+  name_targets(context.scenario, document);
+  const TomlValue before = document;
   Update to{std::move(reader), fields, context, time, document};
   std::map<std::string, TomlTable> parts;
   for (const ClientName& one : client_names()) {
@@ -242,6 +281,9 @@ std::vector<std::string> update_all(const TomlValue& fields, const UpdateContext
   for (const auto& [name, part] : parts) part.finish();
   to.reader.finish();
   if (to.changed.empty()) throw Refusal("value", refusal_text("update", "nothing", update_keys()));
+  std::erase_if(to.changed, [&](const std::string& section) {
+    return is_as_before(document, before, section);
+  });
   return std::move(to.changed);
 }
 

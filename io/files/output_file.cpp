@@ -183,8 +183,8 @@ void OutputFile::finish() {
   unfinished_.reset();
   synchronise(folder_of(target_));
   if (!lock_.alone()) return;  // a part may be of a run that goes on
-  for (const fs::path& left : parts_of(target_))
-    if (rules_.worth == nullptr || !rules_.worth(left)) fs::remove(left, error);
+  for (const fs::path& old : parts_of(target_))
+    if (rules_.worth == nullptr || !rules_.worth(old)) fs::remove(old, error);
 }
 
 std::vector<fs::path> parts_of(const fs::path& target) {

@@ -14,6 +14,7 @@ from .moosdb import Clock, MoosDB
 from .quantities import Wrong
 from .settings import settings_of, value_of
 from .sonar import Sonar
+from .steady import Steady
 
 INPUTS = {**{q.name: q.key for q in quantities.PLATFORM}, "ACTIVE_SONAR_COMMAND": "command",
           "SIM_TARGET": "target", "TOWED_ARRAY_POSITIONS": "phones", "BELLHOP_REQUEST": "paths"}
@@ -75,7 +76,7 @@ class App:
             self._in[used] = (variable, what)
         self.db = MoosDB(host, int(port), name, self.clock, {n: 0.0 for n in self._in}, self._mail,
                          self._lost, self._up)
-        self.sonar = Sonar(self.settings, self.clock, self._result)
+        self.sonar = Sonar(self.settings, Steady(self.clock, warp), self._result)
         self._clock_known = threading.Event()
         if host in ("localhost", "127.0.0.1", "::1", socket.gethostname()):
             self._clock_known.set()

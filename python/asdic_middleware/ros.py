@@ -7,6 +7,7 @@ from . import messages, quantities
 from .quantities import Wrong
 from .settings import NAMES, TRACKER, settings_of
 from .sonar import Sonar
+from .steady import Steady
 
 # parameters: the names of settings in small letters, with _ between words or without
 PARAMETERS = {name.lower(): kind for name, (_, kind) in {**NAMES, **TRACKER}.items()}
@@ -29,9 +30,9 @@ def plain_name(name):
 
 class Bridge:
     """
-    ros  of the version of ROS: now() [s], stamp_of(message) [s or None], set_stamp(message,
-         seconds), publish(topic, message), log(text), msgs (classes by name), floats (makes an
-         array a field)
+    ros  of the version of ROS: now() [s], simulated() (whether that is a simulation's time),
+         stamp_of(message) [s or None], set_stamp(message, seconds), publish(topic, message),
+         log(text), msgs (classes by name), floats (makes an array a field)
     """
 
     def __init__(self, ros, parameters):
@@ -44,7 +45,9 @@ class Bridge:
             raise Wrong(f"parameter {rest[0]}", "a name that there is none",
                         "a setting of docs/formats/middleware.md")
         self._ros = ros
-        self.sonar = Sonar(settings, ros.now, self._result)
+        followed = ros.simulated()
+        clock = Steady(ros.now, factor if followed else 1.0, followed)
+        self.sonar = Sonar(settings, clock, self._result)
 
     # In: called by ROS with each message ---------------------------------------------------------
 

@@ -27,6 +27,7 @@ class Ros1:
                         for topic, kind in OUTPUTS.values()}
 
     now = staticmethod(rospy.get_time)
+    simulated = staticmethod(lambda: not rospy.rostime.is_wallclock())
     log = staticmethod(lambda text: rospy.loginfo("%s", text))
 
     @staticmethod

@@ -38,6 +38,9 @@ class Ros2(Node):
     def now(self):
         return self.get_clock().now().nanoseconds / 1e9
 
+    def simulated(self):
+        return self.get_clock().ros_time_is_active
+
     def log(self, text):
         self.get_logger().info(text)
 

@@ -27,7 +27,7 @@ TRUTH = ("present", "paths", "echo_time", "echo_level_db", "echo_peak_db", "reve
 
 class Sonar:
     """
-    clock  the middleware's time [s], a function
+    clock  Steady, the middleware's time [s]
     emit   called with (kind, dict) for each result, from threads of this class. Kinds: "ping",
            "samples", "files", "detections", "tracks", "truth" (each of a ping, with a list of
            that name), "latency" (the last of a ping), "paths", "error", "ready"
@@ -61,6 +61,7 @@ class Sonar:
         return self._listening.on
 
     def start(self):
+        self._clock.begin()
         for thread in self._threads:
             thread.start()
 
@@ -138,6 +139,9 @@ class Sonar:
             self._errors.warn(line)
         updated = time.monotonic()
         while not self._stop.is_set():
+            if (step := self._clock.stepped()) != 0.0:
+                self.error(f"warning: the clock was set by {step:+.0f} s in all; times of this sonar "
+                           "go on evenly, as if it had not been, until it is started again")
             try:
                 fields, where = self._jobs.get(timeout=0.1)
             except queue.Empty:

@@ -9,13 +9,12 @@ from .quantities import Wrong, shown
 
 MOST_TARGETS = 64
 SLEW = 10.0                  # to a place off the way that was told, while listening [m/s]
-MOST_SKEW = 10.0             # of a stamp against the clock [s]; beyond it counts as now
 
 
 class World:
     """Inputs may come from any thread, the rest from that which speaks with the server.
 
-    clock   the middleware's time [s], a function
+    clock   Steady, the middleware's time [s]
     errors  Errors
     """
 
@@ -69,7 +68,7 @@ class World:
         quantity = next(q for q in quantities.PLATFORM if q.key == name)
         value = quantity.of(value, where)
         with self._lock:
-            self._platform[name] = (value, self._time_of(stamp))
+            self._platform[name] = (value, self._clock.of(stamp))
             self._fresh["platform"] = True
 
     def set_target(self, fields, where, stamp=None):
@@ -85,20 +84,15 @@ class World:
             anew = fields.get("remove") == "true" or "remove" in before
             change = {**({} if anew else before), **fields, "where": where, "before": before}
             if "x" in fields:
-                change["time"] = self._time_of(stamp)
+                change["time"] = self._clock.of(stamp)
             before.pop("before", None)
             self._changes[name] = change
 
     def set_phones(self, places, stamp=None):
         """places: as quantities.positions_of() has them"""
         with self._lock:
-            self._phones = (places, self._time_of(stamp))
+            self._phones = (places, self._clock.of(stamp))
             self._fresh["phones"] = True
-
-    def _time_of(self, stamp):
-        now = self._clock()
-        near = MOST_SKEW * max(self.settings.factor, 1.0)
-        return stamp if stamp is not None and abs(stamp - now) <= near else now
 
     # Changes --------------------------------------------------------------------------------------
 

@@ -114,12 +114,15 @@ std::complex<double> ScattererWeights::operator()(std::uint64_t entity) const no
 double texture_amplitude(const ScattererStatistics& statistics, const Vec2& place,
                          std::uint64_t boundary, std::uint64_t seed) noexcept {
   if (!statistics.k_shape) return 1.0;
-  const auto square = [&](double x) {
+  const auto square = [&](double x, std::uint32_t word) {
     return static_cast<std::uint64_t>(
-        static_cast<std::int64_t>(std::floor(x / statistics.correlation_length)));
+        static_cast<std::int64_t>(std::floor(x / statistics.correlation_length + unit(word))));
   };
-  RandomStream draw(seed, Draw::scatterer_texture, 0,
-                    mixed(mixed(boundary, square(place.x())), square(place.y())));
+  // Where the squares' corners lie is drawn: a sonar at [0, 0] is not at one of them every time.
+  const auto origin = RandomStream(seed, Draw::scatterer_texture, 1, boundary).block(0);
+  RandomStream draw(
+      seed, Draw::scatterer_texture, 0,
+      mixed(mixed(boundary, square(place.x(), origin[0])), square(place.y(), origin[1])));
   return std::sqrt(gamma_of_mean_one(*statistics.k_shape, draw));
 }
 

@@ -16,58 +16,45 @@ constexpr double sea_beta = 0.74;     // of Pierson & Moskowitz, wind at 19.5 m
 constexpr int most_waves = 200;       // beyond, the sum of so many stands for more, by its variance
 constexpr int most_tries = 400;       // of a draw that leaves the boundary
 
-/// One bounce off a rough boundary.
-struct RoughBounce {
-  RoughReflection left;
-  double mean_waves = 0.0;  ///< G²
-  double scale = 0.0;       ///< K of the spectrum: K² = scale²/(−ln u) [rad/m]
-  double strongest = 1.0;   ///< the most that by_slope() weighs
-  bool moves = false;
-  double k = 0.0, grazing = 0.0;
-  double along = 0.0;   ///< s, of its leg [m]
-  double length = 0.0;  ///< L of its leg [m]
-  std::size_t leg = 0;
-  Vec2 place = Vec2::Zero(), ahead = Vec2::Zero();  ///< on the map; unit vector of travel
-  double time = 0.0;                                ///< since the start of the scenario [s]
-};
-
 /// Wind over a fully developed sea of a height, at 19.5 m [m/s].
 double wind_of_height(double rms_height) { return std::sqrt(rms_height * sea_gravity / 0.0523); }
 
-std::vector<RoughBounce> rough_bounces(const Environment& ocean, std::span<const ScatteredLeg> legs,
+std::vector<RoughBounce> rough_bounces(const Environment& ocean, const Arrival& path,
                                        double frequency) {
   std::vector<RoughBounce> found;
-  for (std::size_t i = 0; i < legs.size(); ++i) {
-    const Arrival& path = *legs[i].path;
-    // Arcs are long in proportion to range: what deflects a ray by metres asks for no more.
-    double range = 0.0;
-    for (const Bounce& bounce : path.bounces) range = std::max(range, bounce.range);
-    const double reach =
-        std::max(range, path.path_length * std::cos(path.launch_elevation));  // of the leg, about
-    const Vec2 ahead(std::sin(legs[i].bearing), std::cos(legs[i].bearing));
-    for (const Bounce& bounce : path.bounces) {
-      const bool surface = bounce.boundary == BoundaryKind::surface;
-      const Boundary& boundary = surface ? ocean.surface : ocean.bottom;
-      if (!(boundary.roughness.rms_height > 0.0)) continue;
-      const double c = sound_speed(ocean, 0.0, boundary.depth_at(0.0)).c;
-      RoughBounce one;
-      one.k = 2.0 * pi * frequency / c;
-      one.grazing = bounce.grazing;
-      one.left = rough_reflection(boundary.roughness, std::sin(bounce.grazing), one.k);
-      const double g = 2.0 * one.k * boundary.roughness.rms_height * std::sin(bounce.grazing);
-      one.mean_waves = g * g;
-      const double wind = wind_of_height(boundary.roughness.rms_height);
-      one.scale = std::sqrt(sea_beta) * sea_gravity / (wind * wind);
-      one.moves = surface;
-      const double share = reach > 0.0 ? bounce.range / reach : 0.5;
-      one.length = path.path_length;
-      one.along = share * path.path_length;
-      one.leg = i;
-      one.ahead = ahead;
-      one.place = legs[i].from + bounce.range * ahead;
-      one.time = legs[i].start + share * path.delay;
-      found.push_back(one);
-    }
+  // Arcs are long in proportion to range: what deflects a ray by metres asks for no more.
+  double range = 0.0;
+  for (const Bounce& bounce : path.bounces) range = std::max(range, bounce.range);
+  const double reach =
+      std::max(range, path.path_length * std::cos(path.launch_elevation));  // of the leg, about
+  for (const Bounce& bounce : path.bounces) {
+    const bool surface = bounce.boundary == BoundaryKind::surface;
+    const Boundary& boundary = surface ? ocean.surface : ocean.bottom;
+    if (!(boundary.roughness.rms_height > 0.0)) continue;
+    const double c = sound_speed(ocean, 0.0, boundary.depth_at(0.0)).c;
+    RoughBounce one;
+    one.k = 2.0 * pi * frequency / c;
+    one.grazing = bounce.grazing;
+    one.sine = std::sin(bounce.grazing);
+    one.cosine = std::cos(bounce.grazing);
+    const RoughReflection left = rough_reflection(boundary.roughness, one.sine, one.k);
+    one.energy = left.energy;
+    one.coherent = left.coherent * left.coherent;
+    const double g = 2.0 * one.k * boundary.roughness.rms_height * one.sine;
+    one.mean_waves = g * g;
+    const double wind = wind_of_height(boundary.roughness.rms_height);
+    one.scale = std::sqrt(sea_beta) * sea_gravity / (wind * wind);
+    one.moves = surface;
+    one.share = reach > 0.0 ? bounce.range / reach : 0.5;
+    one.along = one.share * path.path_length;
+    one.range = bounce.range;
+    found.push_back(one);
+  }
+  std::ranges::stable_sort(found, {}, &RoughBounce::along);
+  double all = 1.0, mean = 1.0;
+  for (auto at = found.rbegin(); at != found.rend(); ++at) {
+    at->all_on = all *= at->energy;
+    at->mean_on = mean *= at->coherent;
   }
   return found;
 }
@@ -82,15 +69,6 @@ int at_least_one(double mean, RandomStream& draws) {
   while ((left -= term) > 0.0 && n < 1000) term *= mean / ++n;
   return n;
 }
-
-/// A ray's change of direction, and what the sea's waves that made it do to its phase.
-struct Kink {
-  double down = 0.0, aside = 0.0;  ///< [rad]
-  double out = 0.0;                ///< θ₂ less the mirrored path's grazing angle [rad]
-  double excess = 0.0;             ///< of the way's length [m]
-  Vec2 wavenumber = Vec2::Zero();  ///< on the map [rad/m]
-  double omega = 0.0;              ///< [rad/s]
-};
 
 /// `count` waves of the sea: Σ K along and across the way, Σ ±√(gK).
 Kink waves(const RoughBounce& at, int count, Sea sea, RandomStream& draws) {
@@ -107,110 +85,147 @@ Kink waves(const RoughBounce& at, int count, Sea sea, RandomStream& draws) {
   }
   const double grown = std::sqrt(double(count) / drawn);
   Kink kink;
-  kink.wavenumber = grown * Vec2(along, across);
+  kink.along_way = grown * along;
+  kink.across = grown * across;
   kink.omega = grown * omega;
   return kink;
 }
 
-/// A place on the boundary that joins the two ends of the path, by straight ways.
+/// A place on the boundary that joins the ends of a path by straight ways. The ends lie as far from
+/// the boundary and apart as straight ways by the mirror ask for.
 struct Facet {
-  double grazing_in, grazing_out;  ///< θ₁, θ₂ [rad]
-  double way_in, way_out;          ///< r₁ to it, r₂ from it [m]
+  double way_in, way_out;    ///< r₁ to it, r₂ from it [m]
+  double sine_in, sine_out;  ///< of the grazing angles θ₁, θ₂
+  double cosine_in, cosine_out;
 };
 
-/// The place x where `rises`, a function of the facet that grows with x, is `wanted`. The ends lie
-/// as far from the boundary and apart as straight ways by the mirror ask for.
-template <class Rises>
-Facet facet(const RoughBounce& at, double wanted, const Rises& rises) {
-  const double sine = std::sin(at.grazing), apart = at.length * std::cos(at.grazing);
-  const double d1 = at.along * sine, d2 = (at.length - at.along) * sine;
-  const auto make = [&](double x) {
-    return Facet{.grazing_in = std::atan2(d1, x),
-                 .grazing_out = std::atan2(d2, apart - x),
-                 .way_in = std::hypot(x, d1),
-                 .way_out = std::hypot(apart - x, d2)};
-  };
-  double low = -3.0 * d1, high = apart + 3.0 * d2;  // behind the ends, as far as it is worth
-  for (int i = 0; i < 40; ++i) {
-    const double middle = 0.5 * (low + high);
-    (rises(make(middle)) < wanted ? low : high) = middle;
+class Facets {
+ public:
+  Facets(const RoughBounce& at, double length)
+      : at_(at), before_(at.along), after_(length - at.along), length_(length) {}
+
+  /// Where one wave's K along the way is k(cos θ₂ − cos θ₁). Beyond places behind the ends that are
+  /// not worth following: there.
+  [[nodiscard]] Facet by_wave(double wavenumber) const noexcept {
+    const double wanted = -wavenumber / at_.k;  // cos θ₁ − cos θ₂, which grows with the place
+    double low = lowest(), high = highest(), y = 0.0;
+    Facet there = facet(y);
+    for (int i = 0; i < 60; ++i) {
+      const double over = there.cosine_in - there.cosine_out - wanted;
+      (over < 0.0 ? low : high) = y;
+      const double slope = there.sine_in * there.sine_in / there.way_in +
+                           there.sine_out * there.sine_out / there.way_out;
+      double next = y - over / slope;
+      if (!(next > low && next < high)) next = 0.5 * (low + high);
+      const double step = std::abs(next - y);
+      y = next;
+      there = facet(y);
+      if (step < 1e-9 * length_) break;
+    }
+    return there;
   }
-  return make(0.5 * (low + high));
-}
 
-/// Where one wave's K along the way is k(cos θ₂ − cos θ₁), and the intensity per K that comes by
-/// way of it over that at the mirrored path: first-order perturbation's (sin θ₁ sin θ₂)² over both
-/// ways and over dK/dx = k(sin²θ₁/r₁ + sin²θ₂/r₂). It is most at the mirrored path, 1.
-std::pair<Facet, double> by_wave(const RoughBounce& at, double wavenumber) {
-  const Facet there = facet(at, -wavenumber / at.k, [](const Facet& f) {
-    return std::cos(f.grazing_in) - std::cos(f.grazing_out);
-  });
-  const double sine = std::sin(at.grazing), in = std::sin(there.grazing_in),
-               out = std::sin(there.grazing_out);
-  return {there,
-          at.length / (sine * sine) / (there.way_in / (in * in) + there.way_out / (out * out))};
-}
+  /// Where a slope m mirrors: θ₂ − θ₁ = 2 atan m. With y the place beyond the mirrored path's, the
+  /// tangent of θ₂ − θ₁ is L sin θ y/(s(L − s) + (L − 2s) cos θ y − y²), a quadratic for y.
+  [[nodiscard]] Facet by_slope(double slope) const noexcept {
+    const double ways = before_ * after_,
+                 b = (1.0 - slope * slope) * length_ * at_.sine -
+                     2.0 * slope * (after_ - before_) * at_.cosine,
+                 root = std::sqrt(b * b + 16.0 * slope * slope * ways);
+    const double y = b > 0.0 ? 4.0 * slope * ways / (b + root) : (root - b) / (4.0 * slope);
+    return facet(std::clamp(y, lowest(), highest()));
+  }
 
-/// Where a slope mirrors, θ₂ − θ₁ = 2 atan(slope), and the intensity per slope over that at the
-/// mirrored path: Kirchhoff's (1 − cos(θ₁ + θ₂))²/(sin θ₁ + sin θ₂)³ over both ways and over
-/// d slope/dx.
-std::pair<Facet, double> by_slope(const RoughBounce& at, double slope) {
-  const Facet there = facet(at, 2.0 * std::atan(slope),
-                            [](const Facet& f) { return f.grazing_out - f.grazing_in; });
-  const double middle = 0.5 * (there.grazing_in + there.grazing_out),
-               half_kink = 0.5 * (there.grazing_out - there.grazing_in);
-  return {there, at.length * std::sin(middle) / std::cos(half_kink) /
-                     (std::sin(there.grazing_in) * there.way_out +
-                      std::sin(there.grazing_out) * there.way_in)};
-}
+  /// Intensity per K by way of it over that at the mirrored path: first-order perturbation's
+  /// (sin θ₁ sin θ₂)² over both ways and over dK/dx = k(sin²θ₁/r₁ + sin²θ₂/r₂). It is most at the
+  /// mirrored path, 1.
+  [[nodiscard]] double weight_of_wave(const Facet& there) const noexcept {
+    return length_ / (at_.sine * at_.sine) /
+           (there.way_in / (there.sine_in * there.sine_in) +
+            there.way_out / (there.sine_out * there.sine_out));
+  }
 
-/// The most that by_slope() weighs, anywhere.
-double strongest_slope(const RoughBounce& at) {
-  double most = 1.0;
-  for (int i = -30; i <= 30; ++i) most = std::max(most, by_slope(at, 0.05 * i).second);
-  return 1.1 * most;
-}
+  /// Intensity per slope over that at the mirrored path: Kirchhoff's
+  /// (1 − cos(θ₁ + θ₂))²/(sin θ₁ + sin θ₂)³ over both ways and over d slope/dx.
+  [[nodiscard]] double weight_of_slope(const Facet& f) const noexcept {
+    const double kink = f.cosine_in * f.cosine_out + f.sine_in * f.sine_out;  // cos(θ₂ − θ₁)
+    return length_ * (f.sine_in + f.sine_out) / (1.0 + kink) /
+           (f.sine_in * f.way_out + f.sine_out * f.way_in);
+  }
+
+  /// The most that weight_of_slope() is, anywhere.
+  [[nodiscard]] double strongest_slope() const noexcept {
+    double most = 1.0;
+    for (int i = -30; i <= 30; ++i) most = std::max(most, weight_of_slope(by_slope(0.05 * i)));
+    return 1.1 * most;
+  }
+
+ private:
+  /// \param y  place along the way, after the mirrored path's [m]
+  [[nodiscard]] Facet facet(double y) const noexcept {
+    const double x1 = before_ * at_.cosine + y, x2 = after_ * at_.cosine - y,
+                 d1 = before_ * at_.sine, d2 = after_ * at_.sine;
+    const double r1 = std::sqrt(x1 * x1 + d1 * d1), r2 = std::sqrt(x2 * x2 + d2 * d2);
+    return {.way_in = r1,
+            .way_out = r2,
+            .sine_in = d1 / r1,
+            .sine_out = d2 / r2,
+            .cosine_in = x1 / r1,
+            .cosine_out = x2 / r2};
+  }
+  // Behind the ends, as far as it is worth
+  [[nodiscard]] double lowest() const noexcept { return -before_ * (at_.cosine + 3.0 * at_.sine); }
+  [[nodiscard]] double highest() const noexcept { return after_ * (at_.cosine + 3.0 * at_.sine); }
+
+  const RoughBounce& at_;
+  double before_, after_, length_;
+};
 
 /// A kink that joins the ends of the path: by one wave of the sea, or by the slope of many.
-Kink kink_at(const RoughBounce& at, Sea sea, RandomStream& draws) {
-  const double sine = std::sin(at.grazing), slopes = -2.0 * at.k * sine;  // K over slope
+/// \param strongest  the most that a slope weighs; 0: not known
+Kink kink_at(const RoughBounce& at, double length, double& strongest, Sea sea,
+             RandomStream& draws) {
+  const Facets facets(at, length);
+  const double slopes = -2.0 * at.k * at.sine;  // K over slope
   for (int i = 0; i < most_tries; ++i) {
     const int count = at_least_one(at.mean_waves, draws);
     Kink kink = waves(at, count, sea, draws);
-    const double chance = draws.uniform(), aside = kink.wavenumber.y() / at.k;
-    const double along = kink.wavenumber.x();
-    if (!(std::abs(aside) < 1.0)) continue;
-    if (count == 1 && !(std::abs(along) < 2.0 * at.k)) continue;
-    const auto [there, weight] = count == 1 ? by_wave(at, along) : by_slope(at, along / slopes);
-    if (!(chance * at.strongest < weight)) continue;
-    kink.down = there.grazing_out - there.grazing_in;
-    kink.out = there.grazing_out - at.grazing;
-    kink.aside = aside;
-    kink.excess = there.way_in + there.way_out - at.length +
-                  0.5 * aside * aside * at.along * (at.length - at.along) / at.length;
-    const Vec2 right(at.ahead.y(), -at.ahead.x());
-    kink.wavenumber = along * at.ahead + kink.wavenumber.y() * right;
+    const double chance = draws.uniform();
+    kink.aside = kink.across / at.k;
+    if (!(std::abs(kink.aside) < 1.0)) continue;
+    if (count == 1 && !(std::abs(kink.along_way) < 2.0 * at.k)) continue;
+    if (strongest == 0.0) strongest = facets.strongest_slope();
+    const Facet there =
+        count == 1 ? facets.by_wave(kink.along_way) : facets.by_slope(kink.along_way / slopes);
+    const double weight = count == 1 ? facets.weight_of_wave(there) : facets.weight_of_slope(there);
+    if (!(chance * strongest < weight)) continue;
+    const double in = std::atan2(there.sine_in, there.cosine_in),
+                 out = std::atan2(there.sine_out, there.cosine_out);
+    kink.down = out - in;
+    kink.out = out - at.grazing;
+    kink.excess = there.way_in + there.way_out - length +
+                  0.5 * kink.aside * kink.aside * at.along * (length - at.along) / length;
     return kink;
   }
   return {};
 }
 
-/// What the kinks of each leg add to its length: each for itself, and every two of one leg
+/// What the kinks of one leg add to its length: each for itself, and every two of them
 /// δ_i δ_j s_<(L − s_>)/L, both ways of turning [m].
-double excess(std::span<const RoughBounce> bounces, std::span<const Kink> kinks) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < bounces.size(); ++i) {
-    sum += kinks[i].excess;
-    for (std::size_t j = 0; j < i; ++j) {
-      if (bounces[i].leg != bounces[j].leg) continue;
-      const double near = std::min(bounces[i].along, bounces[j].along),
-                   far = std::max(bounces[i].along, bounces[j].along);
-      sum += (kinks[i].down * kinks[j].down + kinks[i].aside * kinks[j].aside) * near *
-             (bounces[i].length - far) / bounces[i].length;
-    }
+class Excess {
+ public:
+  explicit Excess(double length) : length_(length) {}
+  /// \param along  its place, not before that of the kink before it [m]
+  void add(const Kink& kink, double along) noexcept {
+    sum_ += kink.excess + (kink.down * down_ + kink.aside * aside_) * (length_ - along) / length_;
+    down_ += kink.down * along;
+    aside_ += kink.aside * along;
   }
-  return std::max(sum, 0.0);
-}
+  [[nodiscard]] double sum() const noexcept { return sum_; }
+
+ private:
+  double length_, sum_ = 0.0, down_ = 0.0, aside_ = 0.0;
+};
 
 }  // namespace
 
@@ -232,47 +247,75 @@ std::uint64_t scatter_history(const Arrival& path) noexcept {
   return name;
 }
 
+RoughPath rough_path(const Environment& ocean, const Arrival& path, double frequency, int parts,
+                     std::uint64_t seed, std::uint64_t entity, Sea sea) {
+  RoughPath rough{.length = path.path_length,
+                  .delay = path.delay,
+                  .bounces = rough_bounces(ocean, path, frequency),
+                  .kinks = {}};
+  if (rough.bounces.empty()) return rough;
+  std::vector<double> strongest(rough.bounces.size(), 0.0);
+  rough.kinks.reserve(static_cast<std::size_t>(parts) * rough.bounces.size());
+  for (int part = 0; part < parts; ++part) {
+    RandomStream draws(seed, Draw::forward_scatter, static_cast<std::uint32_t>(part), ~entity);
+    for (std::size_t i = 0; i < rough.bounces.size(); ++i)
+      rough.kinks.push_back(kink_at(rough.bounces[i], rough.length, strongest[i], sea, draws));
+  }
+  return rough;
+}
+
 std::vector<ScatteredPart> forward_scatter(const Environment& ocean,
                                            std::span<const ScatteredLeg> legs, double frequency,
-                                           int parts, std::uint64_t seed, std::uint64_t entity,
-                                           Sea sea) {
-  std::vector<RoughBounce> bounces = rough_bounces(ocean, legs, frequency);
-  // Of the bounces from each on: energy in all, and energy of the mean field
-  std::vector<double> all(bounces.size() + 1, 1.0), mean(bounces.size() + 1, 1.0);
-  for (std::size_t i = bounces.size(); i-- > 0;) {
-    all[i] = all[i + 1] * bounces[i].left.energy;
-    mean[i] = mean[i + 1] * bounces[i].left.coherent * bounces[i].left.coherent;
-  }
-  for (RoughBounce& at : bounces) at.strongest = strongest_slope(at);
+                                           int parts, std::uint64_t seed, std::uint64_t entity) {
+  // Energy that is left after some legs, and of the mean field
+  const auto left = [](std::span<const ScatteredLeg> some, double RoughBounce::*of) {
+    double product = 1.0;
+    for (const ScatteredLeg& leg : some)
+      if (!leg.path->bounces.empty()) product *= leg.path->bounces.front().*of;
+    return product;
+  };
   std::vector<ScatteredPart> found;
-  if (bounces.empty() || !(all[0] > mean[0])) return found;
+  if (!(left(legs, &RoughBounce::all_on) > left(legs, &RoughBounce::mean_on))) return found;
   const double c = sound_speed(ocean, 0.0, ocean.surface.depth_at(0.0)).c;
   const double largest_shift = frequency * scatter_doppler(ocean, frequency);
-  std::vector<Kink> kinks(bounces.size());
+  found.reserve(static_cast<std::size_t>(parts));
   for (int part = 0; part < parts; ++part) {
     RandomStream draws(seed, Draw::forward_scatter, static_cast<std::uint32_t>(part), entity);
     const std::complex<double> weight = draws.complex_normal() / std::sqrt(double(parts));
     bool scattered = false;  // by a bounce before
-    double phase = 0.0;
+    double phase = 0.0, longer = 0.0;
     ScatteredPart one;
-    for (std::size_t i = 0; i < bounces.size(); ++i) {
-      const RoughBounce& at = bounces[i];
-      const double here = at.left.energy - at.left.coherent * at.left.coherent;
-      const double chance = scattered ? here / at.left.energy
-                                      : here * all[i + 1] / std::max(all[i] - mean[i], 1e-300);
-      kinks[i] = {};
-      if (!(draws.uniform() < chance)) continue;
-      scattered = true;
-      const Kink& kink = kinks[i] = kink_at(at, sea, draws);
-      phase += kink.omega * at.time - kink.wavenumber.dot(at.place);
-      one.shift += kink.omega / (2.0 * pi);
-      if (at.leg + 1 < legs.size()) continue;
-      // Towards the end of the last leg: a ray that leaves the surface more steeply goes down more.
-      const double lever = at.along / at.length;
-      one.elevation -= kink.out * (at.moves ? 1.0 : -1.0);
-      one.bearing += kink.aside * lever / std::max(std::cos(at.grazing), 0.1);
+    for (std::size_t l = 0; l < legs.size(); ++l) {
+      const ScatteredLeg& leg = legs[l];
+      const bool last = l + 1 == legs.size();
+      const double all = left(legs.subspan(l + 1), &RoughBounce::all_on),
+                   mean = left(legs.subspan(l + 1), &RoughBounce::mean_on);
+      const Vec2 ahead(std::sin(leg.bearing), std::cos(leg.bearing)), right(ahead.y(), -ahead.x());
+      const auto& bounces = leg.path->bounces;
+      Excess excess(leg.path->length);
+      for (std::size_t i = 0; i < bounces.size(); ++i) {
+        const RoughBounce& at = bounces[i];
+        const double here = at.energy - at.coherent,
+                     after = all * (i + 1 < bounces.size() ? bounces[i + 1].all_on : 1.0);
+        const double chance =
+            scattered ? here / at.energy
+                      : here * after / std::max(all * at.all_on - mean * at.mean_on, 1e-300);
+        if (!(draws.uniform() < chance)) continue;
+        scattered = true;
+        const Kink& kink = leg.path->kinks[static_cast<std::size_t>(part) * bounces.size() + i];
+        excess.add(kink, at.along);
+        phase += kink.omega * (leg.start + at.share * leg.path->delay) -
+                 (kink.along_way * ahead + kink.across * right).dot(leg.from + at.range * ahead);
+        one.shift += kink.omega / (2.0 * pi);
+        if (!last) continue;
+        // Towards the end of the last leg: a ray that leaves the surface more steeply goes down
+        // more.
+        one.elevation -= kink.out * (at.moves ? 1.0 : -1.0);
+        one.bearing += kink.aside * at.share / std::max(at.cosine, 0.1);
+      }
+      longer += excess.sum();
     }
-    one.delay = excess(bounces, kinks) / c;
+    one.delay = std::max(longer, 0.0) / c;
     one.shift = std::clamp(one.shift, -largest_shift, largest_shift);
     one.amplitude = std::polar(1.0, phase) * weight;
     found.push_back(one);

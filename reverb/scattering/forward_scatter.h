@@ -10,12 +10,50 @@
 
 namespace asdic::detail {
 
+/// A bounce of a path off a rough boundary, as straight ways have it that are as long as the path.
+struct RoughBounce {
+  double coherent = 1.0;               ///< share of the energy that the mean field keeps
+  double energy = 1.0;                 ///< that is left of it in all
+  double all_on = 1.0, mean_on = 1.0;  ///< products of both from this bounce on
+  double mean_waves = 0.0;             ///< G²
+  double scale = 0.0;                  ///< K of the spectrum: K² = scale²/(−ln u) [rad/m]
+  double k = 0.0;                      ///< wavenumber of the sound [rad/m]
+  double grazing = 0.0, sine = 0.0, cosine = 1.0;
+  double along = 0.0;  ///< s, of its path [m]
+  double share = 0.0;  ///< of the way and of the time to it
+  double range = 0.0;  ///< horizontal, to it [m]
+  bool moves = false;
+};
+
+/// A change of direction at a bounce, and what the sea's waves that made it do to the phase.
+struct Kink {
+  double down = 0.0, aside = 0.0;        ///< [rad]
+  double out = 0.0;                      ///< θ₂ less the mirrored path's grazing angle [rad]
+  double excess = 0.0;                   ///< of the way's length [m]
+  double along_way = 0.0, across = 0.0;  ///< wavenumber along the way and to its right [rad/m]
+  double omega = 0.0;                    ///< [rad/s]
+};
+
+/// A path's bounces off rough boundaries and the kinks that they make of it, part by part. They are
+/// drawn once for all pairs of paths of which it is one.
+struct RoughPath {
+  double length = 0.0, delay = 0.0;  ///< of the path [m], [s]
+  std::vector<RoughBounce> bounces;  ///< by their places along it
+  std::vector<Kink> kinks;           ///< [parts × bounces]
+};
+
+/// Draws are keyed by the seed and `entity`; they do not depend on the ping.
+/// \param entity  which path of what, the same from ping to ping   \param frequency  [Hz]
+[[nodiscard]] RoughPath rough_path(const Environment& ocean, const Arrival& path, double frequency,
+                                   int parts, std::uint64_t seed, std::uint64_t entity,
+                                   Sea sea = Sea::isotropic);
+
 /// One way of the sound between two ends, along one path.
 struct ScatteredLeg {
-  const Arrival* path = nullptr;
-  Vec2 from = Vec2::Zero();  ///< where it begins, on the map [m]
-  double bearing = 0.0;      ///< of travel [rad]
-  double start = 0.0;        ///< when, since the start of the scenario [s]
+  const RoughPath* path = nullptr;  ///< with as many parts as are asked for
+  Vec2 from = Vec2::Zero();         ///< where it begins, on the map [m]
+  double bearing = 0.0;             ///< of travel [rad]
+  double start = 0.0;               ///< when, since the start of the scenario [s]
 };
 
 /// One of the parts into which what rough boundaries scatter about a path is drawn.
@@ -40,14 +78,13 @@ struct ScatteredPart {
 /// part has a complex Gaussian weight and the phase Ωt − K·x of its waves at the places of the
 /// bounces: so it changes from ping to ping, from place to place. docs/theory/surface-scattering.md
 ///
-/// Draws are keyed by the seed and `entity`; they do not depend on the ping.
-/// \param entity  which path of what, the same from ping to ping   \param frequency  [Hz]
-/// \return none where nothing is rough
+/// Which bounces scatter, and the weights, are drawn by the seed and `entity`, the same from ping
+/// to ping; the kinks are those of the paths. \param frequency  [Hz] \return none where nothing is
+/// rough
 [[nodiscard]] std::vector<ScatteredPart> forward_scatter(const Environment& ocean,
                                                          std::span<const ScatteredLeg> legs,
                                                          double frequency, int parts,
-                                                         std::uint64_t seed, std::uint64_t entity,
-                                                         Sea sea = Sea::isotropic);
+                                                         std::uint64_t seed, std::uint64_t entity);
 
 /// How far forward_scatter() shifts a frequency at most, over it: by four standard deviations of
 /// the sea's vertical velocity, 0.0646·U, and by one wave of twice the sound's wavenumber. 0 where

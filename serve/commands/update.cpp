@@ -51,7 +51,11 @@ Answer update_stream(SessionState& session, const Command& command) {
   time = std::max(time, session.live.changed());
   const LiveScenario before = session.live;
   const std::size_t targets = before.state().scenario.targets.size();
-  session.live.update(command.fields, time);
+  const auto answer = [&](bool drawn_anew) -> Answer {
+    return {.line = update_line(command.id, session.live.state().scenario, time,
+                                session.clock() - command.received, {}, {}, drawn_anew)};
+  };
+  if (!session.live.update(command.fields, time)) return answer(false);
   try {
     listening.change(
         session, time,
@@ -64,8 +68,7 @@ Answer update_stream(SessionState& session, const Command& command) {
   // Streams of reverberation are known by their Doppler factors, which another course changes.
   const bool drawn_anew = command.fields.find("platform") != nullptr &&
                           before.state().scenario.reverberation.enabled && listening.sounds();
-  return {.line = update_line(command.id, session.live.state().scenario, time,
-                              session.clock() - command.received, {}, {}, drawn_anew)};
+  return answer(drawn_anew);
 }
 
 /// What a time in the past does not do.
@@ -86,7 +89,7 @@ std::vector<std::string> told_of_past(double time, double changed, double latest
 Answer UpdateCommand::run(SessionState& session, const Command& command) {
   if (session.listening) return update_stream(session, command);
   const double now = session.now(), changed = session.live.changed();
-  session.live.update(command.fields, now);
+  static_cast<void>(session.live.update(command.fields, now));
   const std::optional<double> said = number_said(command.fields, "time");
   std::optional<double> behind;
   if (session.settings.pace.by_the_clock()) behind = std::max(0.0, now - said.value_or(now));

@@ -27,39 +27,73 @@ std::string Assembler::Partial::content() const {
   return all;
 }
 
-void Assembler::join(const Message& descriptor, std::int64_t block, std::size_t longest) {
-  const bool anew = !joined() || is_far(ahead(descriptor.sequence, latest_));
+bool Assembler::may_join(const Message& descriptor) const noexcept {
+  if (!joined() || over_ || descriptor.time > heard_ + silence) return true;
+  const std::int64_t step = ahead(descriptor.sequence, latest_);
+  return descriptor.sender == sender_ && (step > 0 || is_far(step));
+}
+
+void Assembler::join(const Message& descriptor, std::int64_t block, const Sizes& sizes) {
+  if (!joined() || descriptor.sender != sender_ || is_far(ahead(descriptor.sequence, latest_)))
+    latest_ = descriptor.sequence - 1;
+  begin_at(descriptor);
   blocks_.clear();
+  own_.clear();
+  others_.clear();
   lost_ = 0;
-  next_ = block;
-  longest_ = longest;
+  next_ = known_block_ = block;
+  sizes_ = sizes;
+  sender_ = descriptor.sender;
+  stream_ = descriptor.stream;
+  heard_ = descriptor.time;
+  over_ = false;
+}
+
+/// Sequence numbers are looked at from this descriptor on.
+void Assembler::begin_at(const Message& descriptor) {
+  counts_.lost += static_cast<std::uint64_t>(
+      std::max<std::int64_t>(0, ahead(descriptor.sequence, latest_) - 1));
   begin_ = descriptor.sequence;
-  if (!anew) return;
   seen_.reset();
   for (std::uint32_t i = 0; i < descriptor.packets; ++i) {
     latest_ = begin_ + i;
     seen_.set(latest_ % remembered);
   }
   counts_.packets += descriptor.packets;
+  known_after_ = latest_ + 1;
 }
 
-void Assembler::take(std::string_view bytes, const Give& give) {
-  const auto packet = read_packet(bytes);
+void Assembler::go_on(const Message& descriptor, std::int64_t block, const Give& give) {
+  const std::uint32_t after = descriptor.sequence + descriptor.packets;
+  if (is_far(ahead(after - 1, latest_))) {
+    if (block < next_) return;
+    begin_at(descriptor);
+    pass_to(block, give);
+  }
+  known_block_ = block;
+  known_after_ = after;
+}
+
+void Assembler::take(const Datagram& datagram, const Give& give) {
+  const auto packet = read_packet(datagram.bytes);
   if (!packet) {
     ++counts_.foreign;
     return;
   }
   const bool describes = packet->kind == PacketKind::descriptor;
-  if (!joined() || is_far(ahead(packet->sequence, latest_))) {  // its descriptor tells
-    if (describes)
-      take_descriptor(*packet, give);
-    else if (joined())
-      ++counts_.foreign;
+  const bool senders = joined() && datagram.sender == sender_;
+  if (!senders || packet->stream != stream_) {
+    if (joined() && !over_) ++(senders ? counts_.foreign : counts_.others);
+    if (describes) take_descriptor(*packet, datagram, others_, give);
     return;
   }
-  if (!is_new(*packet)) return;
+  heard_ = datagram.time;
+  const bool far = is_far(ahead(packet->sequence, latest_));  // its next descriptor tells
+  if (!far && !is_new(*packet)) return;
   if (describes)
-    take_descriptor(*packet, give);
+    take_descriptor(*packet, datagram, own_, give);
+  else if (far)
+    ++counts_.foreign;
   else
     take_block(*packet, give);
 }
@@ -91,13 +125,15 @@ bool Assembler::is_new(const Packet& packet) {
   return true;
 }
 
-void Assembler::take_descriptor(const Packet& packet, const Give& give) {
+void Assembler::take_descriptor(const Packet& packet, const Datagram& datagram,
+                                Descriptors& waiting, const Give& give) {
   if (packet.fragments > longest_descriptor) {
     ++counts_.foreign;
     return;
   }
-  const auto place = descriptors_.try_emplace(
-      packet.first(), Partial{.first = packet.first(), .fragments = packet.fragments});
+  const auto place =
+      waiting.try_emplace({std::string(datagram.sender), packet.stream, packet.first()},
+                          Partial{.first = packet.first(), .fragments = packet.fragments});
   Partial& partial = place.first->second;
   if (partial.fragments != packet.fragments) {
     ++counts_.foreign;
@@ -105,9 +141,8 @@ void Assembler::take_descriptor(const Packet& packet, const Give& give) {
   }
   partial.pieces.try_emplace(packet.fragment, packet.payload);
   if (!partial.whole()) {
-    if (descriptors_.size() > most_descriptors)
-      descriptors_.erase(descriptors_.begin() == place.first ? std::next(descriptors_.begin())
-                                                             : descriptors_.begin());
+    if (waiting.size() > most_descriptors)
+      waiting.erase(waiting.begin() == place.first ? std::next(waiting.begin()) : waiting.begin());
     return;
   }
   Message message{.kind = PacketKind::descriptor,
@@ -115,15 +150,26 @@ void Assembler::take_descriptor(const Packet& packet, const Give& give) {
                                     : std::int64_t{packet.block},
                   .sequence = packet.first(),
                   .packets = packet.fragments,
+                  .stream = packet.stream,
+                  .sender = std::string(datagram.sender),
+                  .time = datagram.time,
                   .content = partial.content()};
-  descriptors_.erase(place.first);
+  waiting.erase(place.first);
   give(std::move(message));
 }
 
 void Assembler::take_block(const Packet& packet, const Give& give) {
   const std::int64_t number = next_ + ahead(packet.block, std::uint32_t(next_));
+  const bool last = packet.fragment + 1 == packet.fragments;
+  const std::size_t size = (packet.fragments - std::size_t{1}) * most_payload +
+                           (last ? packet.payload.size() : std::size_t{1});
+  // So many packets were sent between the latest descriptor and it, at the least.
+  const auto between =
+      (number - known_block_) *
+      static_cast<std::int64_t>((sizes_.longest + most_payload - 1) / most_payload);
   if (number < next_ || number > next_ + longest_gap || ahead(packet.first(), begin_) < 0 ||
-      (packet.fragments - std::size_t{1}) * most_payload >= longest_) {
+      between > std::max<std::int64_t>(0, ahead(packet.first(), known_after_)) ||
+      size > sizes_.longest || (last && size % sizes_.sample != 0)) {
     ++counts_.foreign;
     return;
   }
@@ -148,6 +194,9 @@ void Assembler::give_whole(const Give& give) {
                     .block = next_++,
                     .sequence = whole.first,
                     .packets = whole.fragments,
+                    .stream = stream_,
+                    .sender = {},
+                    .time = heard_,
                     .content = whole.content(),
                     .lost = std::exchange(lost_, 0)};
     ++counts_.blocks;
@@ -176,6 +225,7 @@ void Assembler::pass_to(std::int64_t block, const Give& give) {
 void Assembler::finish(std::int64_t next, const Give& give) {
   pass_to(next, give);
   blocks_.clear();
+  over_ = true;
 }
 
 }  // namespace asdic::detail::serve

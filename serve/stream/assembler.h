@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <tuple>
 
 #include "serve/stream/packets.h"
 
@@ -16,7 +17,8 @@ namespace asdic::detail::serve {
 ///
 /// Blocks come out in their order. One that lacks a piece is waited for until `window` blocks later
 /// something has arrived; then it is lost, whole. Before join() no block is taken: what its bytes
-/// mean is not known yet.
+/// mean is not known yet. From then on it is bound to the stream's number and sender: packets of
+/// others are left aside, all but their descriptors, which may be joined if may_join() says so.
 class Assembler {
  public:
   struct Message {
@@ -24,7 +26,10 @@ class Assembler {
     std::int64_t block = 0;      ///< its number; of a descriptor, of the next block
     std::uint32_t sequence = 0;  ///< of its first packet
     std::uint32_t packets = 1;
-    std::string content;
+    std::uint64_t stream = 0;  ///< number of its stream
+    std::string sender = {};
+    double time = 0.0;  ///< when it was whole [s]
+    std::string content = {};
     std::uint64_t lost = 0;  ///< blocks directly before it
   };
   struct Counts {
@@ -32,20 +37,38 @@ class Assembler {
     std::uint64_t lost = 0;         ///< packets, by the gaps in their numbers
     std::uint64_t reordered = 0;    ///< came after a later one
     std::uint64_t duplicates = 0;   ///< came again
-    std::uint64_t foreign = 0;      ///< no packets, or not of this stream, or too late
+    std::uint64_t foreign = 0;      ///< no packets, or none that the stream can have, or too late
+    std::uint64_t others = 0;       ///< of other senders, while the stream goes on
     std::uint64_t blocks = 0;       ///< given
     std::uint64_t lost_blocks = 0;  ///< not whole
   };
   using Give = std::function<void(Message&&)>;
   static constexpr std::int64_t window = 4;  ///< blocks
 
-  /// A stream begins, or is joined. \param descriptor  that says so: what was sent before it does
-  /// not belong to it   \param block  the first one   \param longest  bytes of a block
-  void join(const Message& descriptor, std::int64_t block, std::size_t longest);
-  [[nodiscard]] bool joined() const noexcept { return longest_ > 0; }
+  static constexpr double silence = 5.0;  ///< after which another sender is joined [s]
 
-  /// \param give  is told what is whole by it, a descriptor at once; it may call join()
-  void take(std::string_view bytes, const Give& give);
+  /// Sizes of a stream's blocks [bytes].
+  struct Sizes {
+    std::size_t longest = 0;  ///< of all blocks but a last one, which may be shorter
+    std::size_t sample = 1;   ///< of one sample of all phones: blocks have whole ones
+  };
+  /// A stream begins, or is joined. \param descriptor  that says so: what was sent before it does
+  /// not belong to it   \param block  the first one
+  void join(const Message& descriptor, std::int64_t block, const Sizes& sizes);
+  [[nodiscard]] bool joined() const noexcept { return sizes_.longest > 0; }
+  /// Whether a descriptor is of the stream that is joined.
+  [[nodiscard]] bool is_own(const Message& descriptor) const noexcept {
+    return joined() && descriptor.stream == stream_ && descriptor.sender == sender_;
+  }
+  /// Whether another stream may take its place: the sender's next one; another's when this one has
+  /// ended, or nothing of it came for some time.
+  [[nodiscard]] bool may_join(const Message& descriptor) const noexcept;
+
+  /// \param give  is told what is whole by it, a descriptor at once; it may call join() or go_on()
+  void take(const Datagram& datagram, const Give& give);
+  /// The stream's own descriptor has come. After a gap too long to count, what lies before `block`
+  /// is lost.
+  void go_on(const Message& descriptor, std::int64_t block, const Give& give);
   /// No more comes: what is whole is given, the rest is lost. \param next  number of the block that
   /// would follow: those before it that did not come are lost, too
   void finish(std::int64_t next, const Give& give);
@@ -62,19 +85,30 @@ class Assembler {
     [[nodiscard]] bool whole() const noexcept { return pieces.size() == fragments; }
     [[nodiscard]] std::string content() const;
   };
+  using Key =
+      std::tuple<std::string, std::uint64_t, std::uint32_t>;  // sender, stream, first packet
+  using Descriptors = std::map<Key, Partial>;
   [[nodiscard]] bool is_new(const Packet& packet);
-  void take_descriptor(const Packet& packet, const Give& give);
+  void begin_at(const Message& descriptor);
+  void take_descriptor(const Packet& packet, const Datagram& datagram, Descriptors& waiting,
+                       const Give& give);
   void take_block(const Packet& packet, const Give& give);
   void pass_to(std::int64_t block, const Give& give);
   void give_whole(const Give& give);
 
   Counts counts_;
-  std::map<std::uint32_t, Partial> descriptors_;  // by the sequence number of their first packets
-  std::map<std::int64_t, Partial> blocks_;        // of the window
+  std::string sender_;
+  std::uint64_t stream_ = 0;
+  bool over_ = false;
+  double heard_ = 0.0;                      // when a packet of the stream came last [s]
+  Descriptors own_, others_;                // that are not whole
+  std::map<std::int64_t, Partial> blocks_;  // of the window
   std::int64_t next_ = 0;
   std::uint64_t lost_ = 0;  // blocks since the last one that was given
-  std::size_t longest_ = 0;
-  std::uint32_t begin_ = 0;  // sequence number before which nothing belongs to the stream
+  Sizes sizes_;
+  std::uint32_t begin_ = 0;        // sequence number before which nothing belongs to the stream
+  std::int64_t known_block_ = 0;   // of the latest descriptor
+  std::uint32_t known_after_ = 0;  // sequence number after that
   std::uint32_t latest_ = 0;
   static constexpr std::size_t remembered = 4096;  // packets
   std::bitset<remembered> seen_;                   // by sequence number modulo that

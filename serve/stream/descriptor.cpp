@@ -1,5 +1,6 @@
 #include "serve/stream/descriptor.h"
 
+#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -14,12 +15,28 @@ namespace {
 using OrderedJson = nlohmann::ordered_json;
 
 constexpr double between_descriptors = 1.0;  // of the stream [s]
+/// A stream's number as text: 16 digits.
+std::string text_of(std::uint64_t stream) {
+  std::string text(16, '0');
+  for (auto digit = text.rbegin(); digit != text.rend(); ++digit, stream >>= 4U)
+    *digit = "0123456789abcdef"[stream & 15U];
+  return text;
+}
+
+/// \throws std::invalid_argument
+std::uint64_t stream_of(const std::string& text) {
+  std::uint64_t stream = 0;
+  std::from_chars(text.data(), text.data() + text.size(), stream, 16);
+  if (text_of(stream) != text) throw std::invalid_argument("no number of a stream");
+  return stream;
+}
+
 constexpr std::size_t most_channels = 1u << 20, most_samples = 1u << 28;
 
 }  // namespace
 
 std::string descriptor_text(const Descriptor& one) {
-  OrderedJson json{{"stream", one.stream},
+  OrderedJson json{{"stream", text_of(one.stream)},
                    {"block", one.block},
                    {"time", one.time},
                    {"sample_rate", one.sample_rate}};
@@ -45,7 +62,7 @@ std::optional<Descriptor> read_descriptor(std::string_view text) {
       return true;
     };
     const nlohmann::json json = nlohmann::json::parse(text, shallow);
-    Descriptor one{.stream = json.at("stream"),
+    Descriptor one{.stream = stream_of(json.at("stream")),
                    .block = json.at("block"),
                    .time = json.at("time"),
                    .sample_rate = json.at("sample_rate"),
@@ -73,7 +90,7 @@ std::optional<Descriptor> read_descriptor(std::string_view text) {
   }
 }
 
-Descriptor descriptor_of(const Listening::Block& block, const std::string& stream,
+Descriptor descriptor_of(const Listening::Block& block, std::uint64_t stream,
                          std::size_t block_samples) {
   const Scenario& scenario = block.place.simulator->scenario();
   Descriptor one{.stream = stream,
@@ -96,7 +113,7 @@ Descriptor descriptor_of(const Listening::Block& block, const std::string& strea
 }
 
 DescribedStream::DescribedStream(std::size_t block_samples)
-    : stream_(new_token().substr(0, 16)), block_samples_(block_samples) {}
+    : stream_(stream_of(new_token().substr(0, 16))), block_samples_(block_samples) {}
 
 std::optional<std::string> DescribedStream::before(const Listening::Block& block) {
   next_ = block.number + 1;

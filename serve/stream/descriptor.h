@@ -17,7 +17,7 @@ struct Descriptor {
     std::size_t phones = 1;
   };
 
-  std::string stream;             ///< another one for each `listen`
+  std::uint64_t stream = 0;       ///< number of the stream, drawn at random for each `listen`
   std::int64_t block = 0;         ///< number of the next block
   double time = 0.0;              ///< of its first sample [s]
   double sample_rate = 1.0;       ///< [Hz]
@@ -29,10 +29,12 @@ struct Descriptor {
   bool ended = false;           ///< no block comes any more
 
   [[nodiscard]] std::size_t components() const noexcept { return carrier ? 2 : 1; }
-  /// Of a block of `block_samples` [bytes].
-  [[nodiscard]] std::size_t block_bytes() const noexcept {
-    return channels * block_samples * components() * sizeof(float);
+  /// Of one sample of all phones [bytes].
+  [[nodiscard]] std::size_t sample_bytes() const noexcept {
+    return channels * components() * sizeof(float);
   }
+  /// Of a block of `block_samples` [bytes].
+  [[nodiscard]] std::size_t block_bytes() const noexcept { return block_samples * sample_bytes(); }
 };
 
 /// One JSON object.
@@ -41,7 +43,7 @@ struct Descriptor {
 [[nodiscard]] std::optional<Descriptor> read_descriptor(std::string_view text);
 
 /// Of a stream whose next block this is.
-[[nodiscard]] Descriptor descriptor_of(const Listening::Block& block, const std::string& stream,
+[[nodiscard]] Descriptor descriptor_of(const Listening::Block& block, std::uint64_t stream,
                                        std::size_t block_samples);
 
 /// When a stream is described: at its beginning, where something changes, each second of it.
@@ -54,9 +56,10 @@ class DescribedStream {
   /// At its end, after the latest block; none: there was no block.
   [[nodiscard]] std::optional<std::string> end() const;
   [[nodiscard]] std::int64_t next() const noexcept { return next_; }
+  [[nodiscard]] std::uint64_t stream() const noexcept { return stream_; }  ///< its number
 
  private:
-  std::string stream_;
+  std::uint64_t stream_;
   std::size_t block_samples_;
   std::optional<Descriptor> latest_;
   Listening::Place place_{};

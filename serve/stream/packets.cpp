@@ -9,7 +9,7 @@ namespace asdic::detail::serve {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "headers go out as they lie in memory");
-constexpr std::uint8_t packet_version = 1;
+constexpr std::uint8_t packet_version = 2;
 
 template <class T>
 void put(char* at, T value) {
@@ -35,6 +35,7 @@ std::optional<Packet> read_packet(std::string_view bytes) {
                       .block = get<std::uint32_t>(bytes, 8),
                       .fragment = get<std::uint16_t>(bytes, 12),
                       .fragments = get<std::uint16_t>(bytes, 14),
+                      .stream = get<std::uint64_t>(bytes, 16),
                       .payload = bytes.substr(Packet::header_bytes)};
   if (packet.fragment >= packet.fragments) return std::nullopt;
   if (packet.fragment + 1 < packet.fragments && packet.payload.size() != most_payload)
@@ -42,8 +43,8 @@ std::optional<Packet> read_packet(std::string_view bytes) {
   return packet;
 }
 
-void Packets::split(PacketKind kind, std::int64_t block, std::string_view message,
-                    const Send& send) {
+void Packets::split(PacketKind kind, std::uint64_t stream, std::int64_t block,
+                    std::string_view message, const Send& send) {
   assert(!message.empty() && message.size() <= longest_message);
   const std::size_t fragments = (message.size() + most_payload - 1) / most_payload;
   char* const header = packet_.data();
@@ -53,6 +54,7 @@ void Packets::split(PacketKind kind, std::int64_t block, std::string_view messag
   put(header + 3, static_cast<std::uint8_t>(kind));
   put(header + 8, static_cast<std::uint32_t>(block));
   put(header + 14, static_cast<std::uint16_t>(fragments));
+  put(header + 16, stream);
   for (std::size_t i = 0; i < fragments; ++i) {
     const std::string_view piece = message.substr(i * most_payload, most_payload);
     put(header + 4, sequence_++);

@@ -11,16 +11,24 @@ namespace asdic::detail::serve {
 /// What a packet of a stream is for (docs/formats/stream.md).
 enum class PacketKind : std::uint8_t { descriptor = 0, block = 1 };
 
-/// A packet: 16 bytes of header, and a piece of a message. A message is a descriptor or a block;
+/// What came by UDP.
+struct Datagram {
+  std::string_view bytes;
+  std::string_view sender = {};  ///< "HOST:PORT"
+  double time = 0.0;             ///< when, by a clock that never goes back [s]
+};
+
+/// A packet: 24 bytes of header, and a piece of a message. A message is a descriptor or a block;
 /// each of its pieces but the last is `most_payload` long.
 struct Packet {
-  static constexpr std::size_t header_bytes = 16;
+  static constexpr std::size_t header_bytes = 24;
 
   PacketKind kind = PacketKind::block;
   std::uint32_t sequence = 0;     ///< of the packet, of all that the server sends
   std::uint32_t block = 0;        ///< number of the block; of a descriptor, of the next one
   std::uint16_t fragment = 0;     ///< of the message, from 0
   std::uint16_t fragments = 1;    ///< that the message has
+  std::uint64_t stream = 0;       ///< number of the stream, drawn at random for each `listen`
   std::string_view payload = {};  ///< little endian
 
   /// Of the message's first fragment: it tells messages apart.
@@ -41,8 +49,9 @@ class Packets {
   /// \param sequence  of the first packet
   explicit Packets(std::uint32_t sequence = 0) : sequence_(sequence) {}
 
-  /// \param message  1 to longest_message bytes
-  void split(PacketKind kind, std::int64_t block, std::string_view message, const Send& send);
+  /// \param stream  its number   \param message  1 to longest_message bytes
+  void split(PacketKind kind, std::uint64_t stream, std::int64_t block, std::string_view message,
+             const Send& send);
 
  private:
   std::uint32_t sequence_;

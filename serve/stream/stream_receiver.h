@@ -11,8 +11,9 @@
 
 namespace asdic::detail::serve {
 
-/// Blocks of a stream out of its packets (docs/formats/stream.md). Another stream of the server is
-/// taken when the one before has ended, or ceased.
+/// Blocks of a stream out of its packets (docs/formats/stream.md). It is bound to the stream that
+/// it joins first. The server's next one is taken where it begins, another server's when this one
+/// has ended, or ceased.
 class StreamReceiver {
  public:
   struct Block {
@@ -24,7 +25,7 @@ class StreamReceiver {
   };
   using Give = std::function<void(Block&&)>;
 
-  void take(std::string_view packet, const Give& give);
+  void take(const Datagram& packet, const Give& give);
 
   [[nodiscard]] const std::optional<Descriptor>& about() const noexcept { return about_; }
   [[nodiscard]] bool ended() const noexcept { return ended_; }
@@ -32,7 +33,7 @@ class StreamReceiver {
 
  private:
   void described(const Assembler::Message& message, const Assembler::Give& give);
-  [[nodiscard]] std::optional<Block> block_of(const Assembler::Message& message) const;
+  [[nodiscard]] Block block_of(const Assembler::Message& message) const;
 
   Assembler assembler_;
   std::optional<Descriptor> about_;

@@ -5,13 +5,13 @@
 #include <array>
 #include <asio.hpp>
 #include <charconv>
+#include <chrono>
 #include <random>
 #include <utility>
 
 #include "core/error.h"
 #include "core/text.h"
 #include "serve/stream/descriptor.h"
-#include "serve/stream/packets.h"
 #include "serve/stream/stream_turn.h"
 
 namespace asdic::detail::serve {
@@ -76,8 +76,8 @@ class UdpOutlet::Sender {
 
   StreamTurn turn;
 
-  void send(PacketKind kind, std::int64_t block, std::string_view message) {
-    packets_.split(kind, block, message, [&](std::string_view packet) {
+  void send(PacketKind kind, std::uint64_t stream, std::int64_t block, std::string_view message) {
+    packets_.split(kind, stream, block, message, [&](std::string_view packet) {
       std::error_code error;
       socket_.send_to(asio::buffer(packet.data(), packet.size()), to_, 0, error);
       if (error && !std::exchange(failed_, true))
@@ -114,7 +114,7 @@ class UdpOutlet::Sink : public BlockSink {
   ~Sink() override {
     if (const auto end = about_.end())
       for (int i = 0; i < 3; ++i)  // one of them comes
-        sender_->send(PacketKind::descriptor, about_.next(), *end);
+        sender_->send(PacketKind::descriptor, about_.stream(), about_.next(), *end);
     sender_->turn.give_back();
   }
   Sink(const Sink&) = delete;
@@ -122,8 +122,8 @@ class UdpOutlet::Sink : public BlockSink {
 
   void take(const Listening::Block& block) override {
     if (const auto text = about_.before(block))
-      sender_->send(PacketKind::descriptor, block.number, *text);
-    sender_->send(PacketKind::block, block.number,
+      sender_->send(PacketKind::descriptor, about_.stream(), block.number, *text);
+    sender_->send(PacketKind::block, about_.stream(), block.number,
                   {reinterpret_cast<const char*>(block.pressure.data()),
                    block.pressure.size() * sizeof(float)});
   }
@@ -163,15 +163,24 @@ class UdpReceiver::Impl {
     if (error) throw RunError("--udp " + place + ": " + error.message());
   }
 
-  std::string_view next(double seconds) {
+  Datagram next(double seconds) {
     std::error_code error;
-    std::size_t n = socket_.receive(asio::buffer(bytes_), 0, error);
+    Udp::endpoint sender;
+    std::size_t n = socket_.receive_from(asio::buffer(bytes_), sender, 0, error);
     if (error == asio::error::would_block) {
       pollfd one{.fd = socket_.native_handle(), .events = POLLIN, .revents = 0};
       if (::poll(&one, 1, static_cast<int>(seconds * 1000.0)) <= 0) return {};
-      n = socket_.receive(asio::buffer(bytes_), 0, error);
+      n = socket_.receive_from(asio::buffer(bytes_), sender, 0, error);
     }
-    return error ? std::string_view() : std::string_view(bytes_.data(), n);
+    if (error) return {};
+    if (sender_text_.empty() || sender != sender_) {
+      sender_ = sender;
+      sender_text_ = sender.address().to_string() + ":" + std::to_string(sender.port());
+    }
+    const auto now = std::chrono::steady_clock::now().time_since_epoch();
+    return {.bytes = {bytes_.data(), n},
+            .sender = sender_text_,
+            .time = std::chrono::duration<double>(now).count()};
   }
 
  private:
@@ -186,7 +195,8 @@ class UdpReceiver::Impl {
   }
 
   asio::io_context io_{1};
-  Udp::endpoint from_;
+  Udp::endpoint from_, sender_;
+  std::string sender_text_;  // of the latest datagram
   Udp::socket socket_;
   std::array<char, 65536> bytes_{};
 };
@@ -195,6 +205,6 @@ UdpReceiver::UdpReceiver(const std::string& place, const std::string& interface)
     : impl_(std::make_unique<Impl>(place, interface)) {}
 UdpReceiver::~UdpReceiver() = default;
 
-std::string_view UdpReceiver::next(double seconds) { return impl_->next(seconds); }
+Datagram UdpReceiver::next(double seconds) { return impl_->next(seconds); }
 
 }  // namespace asdic::detail::serve

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "serve/stream/block_sink.h"
+#include "serve/stream/packets.h"
 
 namespace asdic::detail::serve {
 
@@ -37,8 +38,8 @@ class UdpReceiver {
   UdpReceiver(const UdpReceiver&) = delete;
   UdpReceiver& operator=(const UdpReceiver&) = delete;
 
-  /// The next packet, until the next call; "" if none comes so long. \param seconds  to wait
-  [[nodiscard]] std::string_view next(double seconds);
+  /// The next packet, until the next call; no bytes if none comes so long. \param seconds  to wait
+  [[nodiscard]] Datagram next(double seconds);
 
  private:
   class Impl;

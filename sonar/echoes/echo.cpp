@@ -13,7 +13,9 @@
 #include "core/propagation_memory.h"
 #include "raytrace/parallel/stop.h"
 #include "reverb/scattering/forward_scatter.h"
+#include "sonar/echoes/leg_response.h"
 #include "sonar/echoes/one_leg.h"
+#include "sonar/echoes/outer_phones.h"
 #include "sonar/echoes/target_response.h"
 #include "sonar/paths/moving_paths.h"
 #include "sonar/paths/plane_wave.h"
@@ -65,7 +67,10 @@ class EchoFinder {
     const bool exact = scenario_.propagation.exact_per_phone;
     Way home = way_back(out, exact ? 0 : -1);
     const bool many = home.leg.arrivals.size() > context_.most_pairs / out.leg.arrivals.size();
-    if (many) result.many = all_pairs(out, home);
+    if (many)
+      result.many = all_pairs(out, home);
+    else
+      draw_scattering(out, home);
     for (std::size_t n = 0; n < (exact ? phones_.size() : 1); ++n) {
       if (n > 0) home = way_back(out, static_cast<int>(n));
       if (many) {
@@ -78,7 +83,8 @@ class EchoFinder {
     }
     if (many) {
       shorten_bounces(result.legs.front().arrivals);
-    } else if (!exact && context_.listens && !plane_waves(result)) {
+    } else if (!exact && context_.listens &&
+               !(plane_waves(result) && alike_at_phones(out, result.legs.back(), home.end))) {
       TargetEchoes at_phones;
       for (std::size_t n = 0; n < phones_.size(); ++n)
         pair_up(source, out, way_back(out, static_cast<int>(n)), at_phones);
@@ -114,15 +120,26 @@ class EchoFinder {
     });
   }
 
+  /// \param home  at the reference point, there at a place
+  [[nodiscard]] bool alike_at_phones(const Way& out, const Leg& home, const Kinematics& end) const {
+    return is_alike_at_phones(context_, {home, end.position}, [&](int phone) -> ArrivedLeg {
+      // Over slopes rays are followed there; the amplitude of waves is to be found.
+      Way own = way_back(out, phone, layered_ ? std::span<const Arrival>() : home.arrivals);
+      return {std::move(own.leg), own.end.position};
+    });
+  }
+
   /// \param channel  phone that receives it; −1: the reference point
   [[nodiscard]] Carried receiver(int channel) const {
     return geometry_.receiver(context_.array, channel);
   }
 
-  /// From where the first sound strikes the target.
-  [[nodiscard]] Way way_back(const Way& out, int channel) const {
+  /// From where the first sound strikes the target. \param known  paths to somewhere nearby
+  [[nodiscard]] Way way_back(const Way& out, int channel,
+                             std::span<const Arrival> known = {}) const {
     const Carried receiver = this->receiver(channel);
-    Way back = moving_.way(out.end.position, out.reference_time, receiver.track, receiver.offset);
+    Way back =
+        moving_.way(out.end.position, out.reference_time, receiver.track, receiver.offset, known);
     back.leg.kind = Leg::Kind::target_to_array;
     back.leg.target = index_;
     back.leg.channel = channel;
@@ -169,6 +186,9 @@ class EchoFinder {
                TargetEchoes& result) const {
     const int channel = back.leg.channel;
     const Carried receiver = this->receiver(channel);
+    const std::vector<RoughPath> rough_home = rough_paths(back.leg.arrivals, 2);
+    const auto there = across_the_band(source.position, out),
+               home = across_the_band(out.end.position, back);
     for (std::size_t i = 0; i < out.leg.arrivals.size(); ++i) {
       const Strike strike = this->strike(source, out, i, back.leg.arrivals, receiver);
       for (std::size_t j = 0; j < back.leg.arrivals.size(); ++j) {
@@ -177,13 +197,30 @@ class EchoFinder {
         if (!pair || (bounces_.surface > fewest_bounces && pair->home.time > latest_)) continue;
         const std::size_t first = result.scattered.size();
         std::vector<EchoPath> echoes = answer(*pair, receiver, channel);
-        scatter(*pair, echoes, parts_of(out.leg.arrivals.size() * back.leg.arrivals.size()),
-                result.scattered);
+        scatter(*pair, echoes, rough_out_[i], rough_home[j], result.scattered);
         name(i, j, std::span(result.scattered).subspan(first));
         name(i, j, echoes);
+        if (there != nullptr) {
+          const std::vector legs = {path_on_leg(there, i, source.position, pair->there),
+                                    path_on_leg(home, j, pair->target.position, pair->home)};
+          for (EchoPath& echo : echoes) echo.legs = legs;
+        }
         for (EchoPath& echo : echoes) result.echoes.push_back(std::move(echo));
       }
     }
+  }
+
+  /// The paths of a way, for other frequencies than the centre; null: nobody asks.
+  [[nodiscard]] std::shared_ptr<const MetLeg> across_the_band(const Vec3& from,
+                                                              const Way& way) const {
+    if (!context_.listens || context_.pulse == nullptr ||
+        scenario_.propagation.band == BandOfLosses::narrow)
+      return nullptr;
+    return std::make_shared<const MetLeg>(MetLeg{.from = from,
+                                                 .to = way.end.position,
+                                                 .paths = way.leg.arrivals,
+                                                 .frequency = context_.frequency,
+                                                 .limits = limits_});
   }
 
   /// By the numbers of their paths.
@@ -207,12 +244,16 @@ class EchoFinder {
     many.last = std::min(latest_, there.back().delay + home.back().delay);
     many.at_phones =
         scenario_.propagation.exact_per_phone ||
-        (context_.listens && !std::all_of(home.begin(), home.end(), [&](const Arrival& path) {
-           const Return received_there{
-               .delay = there.front().delay + path.delay,
-               .slowness = met_by(back.end.velocity, arriving_slowness(back.leg.bearing, path, c))};
-           return is_plane_wave(context_, received_there, path.path_length);
-         }));
+        (context_.listens &&
+         !std::all_of(home.begin(), home.end(),
+                      [&](const Arrival& path) {
+                        const Return received_there{
+                            .delay = there.front().delay + path.delay,
+                            .slowness = met_by(back.end.velocity,
+                                               arriving_slowness(back.leg.bearing, path, c))};
+                        return is_plane_wave(context_, received_there, path.path_length);
+                      })) ||
+        (context_.listens && !alike_at_phones(out, back.leg, back.end));
     return many;
   }
 
@@ -223,6 +264,8 @@ class EchoFinder {
     const std::size_t most =
         back.leg.channel < 0 ? most_listed : std::max<std::size_t>(1, most_listed / phones_.size());
     const Carried receiver = this->receiver(back.leg.channel);
+    const auto there = across_the_band(source.position, out),
+               home = across_the_band(out.end.position, back);
     for (const auto& [i, j] : loudest_pairs(out.leg, back.leg, most)) {
       stop_point();
       const Strike strike =
@@ -231,6 +274,8 @@ class EchoFinder {
       if (!pair) continue;
       std::vector<EchoPath> echoes = answer(*pair, receiver, back.leg.channel);
       name(i, j, echoes);
+      if (there != nullptr)
+        for (EchoPath& echo : echoes) echo.legs = {{there, i}, {home, j}};
       for (EchoPath& echo : echoes) result.echoes.push_back(std::move(echo));
     }
   }
@@ -272,14 +317,35 @@ class EchoFinder {
     return found;
   }
 
-  /// Into how many parts what is scattered about a pair of paths is drawn, of so many pairs.
-  static int parts_of(std::size_t pairs) {
+  /// Draws what rough boundaries make of the paths there, once for all phones, and into how many
+  /// parts.
+  void draw_scattering(const Way& out, const Way& back) {
     constexpr std::size_t most = 4096;  // of a target
-    return static_cast<int>(std::clamp<std::size_t>(most / std::max<std::size_t>(pairs, 1), 2, 16));
+    const std::size_t pairs = out.leg.arrivals.size() * back.leg.arrivals.size();
+    parts_ =
+        static_cast<int>(std::clamp<std::size_t>(most / std::max<std::size_t>(pairs, 1), 2, 16));
+    rough_out_ = rough_paths(out.leg.arrivals, 1);
+  }
+
+  /// \param leg  1: there; 2: home
+  [[nodiscard]] std::vector<RoughPath> rough_paths(const Arrivals& paths, std::uint64_t leg) const {
+    std::vector<RoughPath> found;
+    for (const Arrival& path : paths)
+      found.push_back(rough_path(scenario_.environment, path, context_.frequency, parts_,
+                                 scenario_.seed,
+                                 mixed(mixed(entity(), leg), scatter_history(path))));
+    return found;
+  }
+
+  /// A number that names the transmitter and the target.
+  [[nodiscard]] std::uint64_t entity() const {
+    return mixed(static_cast<std::uint64_t>(geometry_.sent().transmitter),
+                 static_cast<std::uint64_t>(index_));
   }
 
   /// What rough boundaries scatter about a pair of paths. \param echoes  of the pair's own
-  void scatter(const TwoWayPaths& pair, std::span<const EchoPath> echoes, int parts,
+  void scatter(const TwoWayPaths& pair, std::span<const EchoPath> echoes,
+               const RoughPath& rough_out, const RoughPath& rough_home,
                std::vector<EchoPath>& found) const {
     const Arrival &there = pair.there.path, &home = pair.home.path;
     const double mean = std::norm(there.amplitude * home.amplitude);
@@ -287,21 +353,20 @@ class EchoFinder {
     if (!(scattered > 1e-9 * mean)) return;
     const auto place = [](const Kinematics& end) { return Vec2(end.position.head<2>()); };
     const ScatteredLeg legs[] = {
-        {&there, place(pair.source), pair.there.way.leg.bearing, geometry_.time()},
-        {&home, place(pair.target), pair.home.way.leg.bearing, geometry_.time() + pair.there.time}};
+        {&rough_out, place(pair.source), pair.there.way.leg.bearing, geometry_.time()},
+        {&rough_home, place(pair.target), pair.home.way.leg.bearing,
+         geometry_.time() + pair.there.time}};
+    const std::uint64_t name =
+        mixed(mixed(entity(), scatter_history(there)), scatter_history(home));
     const double c = context_.paths.speed_at(pair.home.way.end.position);
     const double pressure = std::sqrt(scattered);
     for (const EchoPath& echo : echoes) {
-      std::uint64_t entity = mixed(static_cast<std::uint64_t>(geometry_.sent().transmitter),
-                                   static_cast<std::uint64_t>(index_));
-      for (const std::uint64_t more : {scatter_history(there), scatter_history(home)})
-        entity = mixed(entity, more);
       // what the glint itself sends back, and the transmitter to there
       const std::complex<double> of_glint = echo.glint,
                                  pattern = context_.pattern.towards(echo.response.bearing,
                                                                     echo.response.elevation);
       for (const ScatteredPart& part : forward_scatter(
-               scenario_.environment, legs, context_.frequency, parts, scenario_.seed, entity)) {
+               scenario_.environment, legs, context_.frequency, parts_, scenario_.seed, name)) {
         EchoPath one = echo;
         one.curve.reset();
         one.received.delay += part.delay;
@@ -510,7 +575,9 @@ class EchoFinder {
   double latest_;    // end of the record [s]
   Bounces bounces_;  // that are followed
   PathLimits limits_;
-  MovingPaths moving_, closely_;  // closely: delays as they change during a pulse
+  MovingPaths moving_, closely_;      // closely: delays as they change during a pulse
+  int parts_ = 1;                     // in which what is scattered about a pair is drawn
+  std::vector<RoughPath> rough_out_;  // of the paths there
 };
 
 }  // namespace

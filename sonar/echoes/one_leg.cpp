@@ -37,11 +37,15 @@ void scatter_along(const EchoContext& context, const Kinematics& sender, double 
   const Arrival& path = met.path;
   if (!(path.scattered > 1e-9 * std::norm(path.amplitude))) return;
   const double c = context.paths.speed_at(met.way.end.position);
-  const ScatteredLeg leg{&path, sender.position.head<2>(), met.way.leg.bearing,
+  const Scenario& scenario = context.scenario();
+  const std::uint64_t entity = mixed(ends, scatter_history(path));
+  const RoughPath rough =
+      rough_path(scenario.environment, path, context.frequency, parts, scenario.seed, entity);
+  const ScatteredLeg leg{&rough, sender.position.head<2>(), met.way.leg.bearing,
                          context.geometry.time() + sent};
   for (const ScatteredPart& part :
-       forward_scatter(context.scenario().environment, std::span(&leg, 1), context.frequency, parts,
-                       context.scenario().seed, mixed(ends, scatter_history(path)))) {
+       forward_scatter(scenario.environment, std::span(&leg, 1), context.frequency, parts,
+                       scenario.seed, entity)) {
     EchoPath one = received;
     one.curve.reset();
     one.received.delay += part.delay;

@@ -74,7 +74,7 @@ Interference::Interference(const Scenario& scenario, const PropagationPaths& pat
   double fastest_platform = 0.0;
   for (const Platform& p : scenario.platforms)
     fastest_platform = std::max(fastest_platform, fastest(p.track));
-  if (scenario.propagation.wide_band && !scenario.interferers.empty()) {
+  if (scenario.propagation.band == BandOfLosses::wide && !scenario.interferers.empty()) {
     const double high = source_carrier_ + 0.25 * source_rate_;
     band_ = frequencies_of_losses(
         scenario.environment, std::max(source_carrier_ - 0.25 * source_rate_, 0.01 * high), high);
@@ -182,11 +182,13 @@ void Interference::scatter(const Interferer& ship, double time,
     const Arrival& path = one.path.path;
     if (!(path.scattered > 1e-9 * std::norm(path.amplitude))) continue;
     const double left = time - one.path.delay;
-    const ScatteredLeg leg{&path, ship.track.at(left).position.head<2>(), one.path.bearing, left};
     const std::uint64_t entity = mixed(mixed(number, ~1ULL), scatter_history(path));
-    one.parts =
-        forward_scatter(scenario_.environment, std::span(&leg, 1), frequency_,
-                        path.scattered > 0.01 * loudest ? most_parts : 1, scenario_.seed, entity);
+    const int parts = path.scattered > 0.01 * loudest ? most_parts : 1;
+    const RoughPath rough =
+        rough_path(scenario_.environment, path, frequency_, parts, scenario_.seed, entity);
+    const ScatteredLeg leg{&rough, ship.track.at(left).position.head<2>(), one.path.bearing, left};
+    one.parts = forward_scatter(scenario_.environment, std::span(&leg, 1), frequency_, parts,
+                                scenario_.seed, entity);
   }
 }
 

@@ -21,6 +21,7 @@
 #include "sonar/paths/enough_bounces.h"
 #include "sonar/reverberation/phone_groups.h"
 #include "sonar/scenario/ping_bounds.h"
+#include "sonar/scenario/ping_geometry.h"
 #include "sonar/scenario/sampling.h"
 #include "sonar/scenario/transmission.h"
 
@@ -426,6 +427,90 @@ std::string of_law(const char* where, const std::variant<Law...>& law, double lo
 
 }  // namespace
 
+namespace {
+
+/// About how long sound takes from one place straight to another [s].
+double straight_delay(const Scenario& scenario, const Vec3& from, const Vec3& to) {
+  constexpr int parts = 16;
+  double slowness = 0.0;
+  for (int i = 0; i < parts; ++i)
+    slowness += 1.0 / (parts * speed_at(scenario, from + (i + 0.5) / parts * (to - from)));
+  return slowness * (to - from).norm();
+}
+
+}  // namespace
+
+std::string echo_beside_record(const Scenario& scenario) {
+  if (scenario.pings.continuous) return "";
+  constexpr std::size_t looked_at = 100;
+  const double begin = scenario.pings.recording_start, end = end_of_record(scenario);
+  const std::vector<Transmission> sent = transmissions(scenario);
+  const std::size_t step = (sent.size() + looked_at - 1) / looked_at;
+  for (std::size_t i = 0; i < sent.size(); i += step) {
+    const int ping = static_cast<int>(i) + 1;
+    const PingGeometry geometry(scenario, sent[i], ping);
+    const double duration = pulse_of(scenario, sent[i].transmitter).duration;
+    for (std::size_t t = 0; t < scenario.targets.size(); ++t) {
+      const Target& target = scenario.targets[t];
+      if (ping < target.first_ping || ping > target.last_ping) continue;
+      const Vec3 place = geometry.target_at(static_cast<int>(t), 0.0).position;
+      const double there = straight_delay(scenario, geometry.source().position, place);
+      double first = infinity;
+      bool received = scenario.arrays.empty();
+      for (std::size_t a = 0; a < scenario.arrays.size() && !received; ++a) {
+        const double delay =
+            there + straight_delay(scenario, place, geometry.reference_place(int(a)).position);
+        first = std::min(first, delay);
+        received = delay >= begin && delay + duration <= end;
+      }
+      if (received) continue;
+      char text[256];
+      std::snprintf(text, sizeof text,
+                    "pings.recording_duration: the echo of target %s is received from about %.3g s "
+                    "after ping %d on, for %.3g s; its record holds %g to %g s",
+                    target.name.c_str(), first, ping, duration, begin, end);
+      return text;
+    }
+  }
+  return "";
+}
+
+std::string overlapping_records(const Scenario& scenario) {
+  if (scenario.pings.continuous) return "";
+  const std::vector<Transmission> sent = transmissions(scenario);
+  double nearest = infinity;
+  for (std::size_t i = 1; i < sent.size(); ++i)
+    nearest = std::min(nearest, sent[i].time - sent[i - 1].time);
+  if (!(nearest < (1.0 - 1e-9) * end_of_record(scenario))) return "";
+  char text[256];
+  std::snprintf(
+      text, sizeof text,
+      "pings.recording_duration: a ping is recorded until %g s after it was sent, and the "
+      "next one is sent %g s after it: no record has what is received of other pings; "
+      "pings.continuous = true has all",
+      end_of_record(scenario), nearest);
+  return text;
+}
+
+std::string steered_line(const Scenario& scenario) {
+  constexpr double much = 1.25;
+  for (const Transmission& sent : transmissions(scenario)) {
+    const Transmitter& transmitter =
+        scenario.transmitters[static_cast<std::size_t>(sent.transmitter)];
+    const auto* line = std::get_if<LineBeam>(&transmitter.beam);
+    if (line == nullptr || line->taper == Taper::omnidirectional) continue;
+    const double width = line->steered_width(sent.elevation);
+    if (width < much * line->beamwidth) continue;
+    char text[256];
+    std::snprintf(text, sizeof text,
+                  "transmitter.beamwidth_deg: steered to %g deg, the line's beam is %.3g deg wide; "
+                  "%g deg is its width when it is not steered",
+                  degrees(sent.elevation), degrees(width), degrees(line->beamwidth));
+    return text;
+  }
+  return "";
+}
+
 std::string scattering_energy(const Scenario& scenario) {
   const ReverberationSettings& reverberation = scenario.reverberation;
   const Environment& ocean = scenario.environment;
@@ -463,15 +548,16 @@ namespace asdic::detail {
 std::vector<std::string> warnings(const Scenario& scenario) {
   const PulseFrequencies pulse = pulse_frequencies(scenario);
   std::vector<std::string> all = warnings(scenario.environment, pulse.lowest, pulse.highest);
-  add_warnings(
-      {checks::pulse_band(scenario), checks::comb_lines(scenario),
-       checks::noise_law_range(scenario), checks::noise_table_band(scenario),
-       checks::surface_scattering_range(scenario), checks::reverberation_plane_waves(scenario),
-       checks::noise_of_a_bent_line(scenario), checks::noise_from_below(scenario),
-       checks::left_out_diffraction(scenario), checks::beyond_the_map(scenario),
-       checks::wind_elsewhere(scenario), checks::far_from_the_origin(scenario),
-       checks::scattering_energy(scenario), checks::planes_beside_volume(scenario)},
-      all);
+  add_warnings({checks::pulse_band(scenario), checks::comb_lines(scenario),
+                checks::noise_law_range(scenario), checks::noise_table_band(scenario),
+                checks::surface_scattering_range(scenario),
+                checks::reverberation_plane_waves(scenario), checks::noise_of_a_bent_line(scenario),
+                checks::noise_from_below(scenario), checks::left_out_diffraction(scenario),
+                checks::beyond_the_map(scenario), checks::wind_elsewhere(scenario),
+                checks::far_from_the_origin(scenario), checks::scattering_energy(scenario),
+                checks::planes_beside_volume(scenario), checks::echo_beside_record(scenario),
+                checks::overlapping_records(scenario), checks::steered_line(scenario)},
+               all);
   return all;
 }
 

@@ -9,6 +9,7 @@ import math
 import random
 import sys
 import tempfile
+import threading
 import time
 from pathlib import Path
 
@@ -16,9 +17,11 @@ ROOT = Path(__file__).resolve().parents[3]
 sys.path[:0] = [str(ROOT / "python"), str(ROOT / "tests/support")]
 import moosdb as small  # noqa: E402
 from asdic_middleware import mission, packets, quantities  # noqa: E402
+from asdic_middleware.due import Due  # noqa: E402
 from asdic_middleware.moos_app import App  # noqa: E402
 from asdic_middleware.packets import Malformed  # noqa: E402
 from asdic_middleware.quantities import Wrong  # noqa: E402
+from asdic_middleware.steady import Steady  # noqa: E402
 from checks import check  # noqa: E402
 from deep import DEEP  # noqa: E402
 
@@ -246,6 +249,44 @@ def test_missions():
                            ("a = b", "expected ProcessConfig = asdic-moos")):
             path.write_text(text)
             check(said in refused(App, path), text)
+
+
+def test_set_clock():
+    """The machine's clock is set back by 600 s, then ahead by 1200 s, while a result waits for its
+    time: by a clock that nobody sets it comes when it is due. The step is reported once. A message
+    counts by its age on the clock that stamped it.
+    """
+    for warp in (1.0, 20.0):
+        wall = [0.0]  # by which the clock was set
+        clock = Steady(lambda: warp * (time.monotonic() + wall[0]), warp)
+        clock.begin()
+        came, errors = [], []
+        due = Due(clock, warp, lambda kind, what: came.append((what["due"], clock())), errors.append)
+        letting_go = threading.Thread(target=due.let_go)
+        letting_go.start()
+        for step in (-600.0, 1200.0):
+            at = clock() + 0.3 * warp
+            due.hold(at, "ping", {"due": at})
+            check(clock.stepped() == 0.0, "not yet")
+            wall[0] += step
+            check(abs(clock.stepped() - warp * wall[0]) < 1.0, "in all")
+            check(clock.stepped() == 0.0, "once")
+            stamp = warp * (time.monotonic() + wall[0]) - 0.5 * warp
+            check(abs(clock.of(stamp) - (clock() - 0.5 * warp)) < 0.1 * warp, "half a second ago")
+            check(abs(clock.of(stamp - warp * step) - clock()) < 0.1 * warp, "of a clock that was set: now")
+            patience = time.monotonic() + 30
+            while not came and time.monotonic() < patience:
+                time.sleep(0.01)
+            check(len(came) == 1, "it comes")
+            what, when = came.pop()
+            check(0 <= when - what, "not before its time")
+        due.stop()
+        letting_go.join()
+        check(not errors, f"{errors}")
+    paused = Steady(lambda: 5.0, 1.0, followed=True)  # a simulation's
+    paused.begin()
+    time.sleep(0.01)
+    check(paused() == 5.0 and paused.stepped() == 0.0, "it stands")
 
 
 def main():

@@ -69,7 +69,7 @@ class Node:
         self.callbacks[topic] = callback
 
     def get_clock(self):
-        return types.SimpleNamespace(now=lambda: Time(time.time_ns()))
+        return types.SimpleNamespace(now=lambda: Time(time.time_ns()), ros_time_is_active=False)
 
     def get_logger(self):
         return types.SimpleNamespace(info=self.said.append, fatal=self.said.append)

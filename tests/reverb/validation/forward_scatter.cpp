@@ -38,8 +38,9 @@ Arrival bounced(const Environment& ocean, double grazing, double slant, double f
 std::vector<ScatteredPart> parts_of(const Environment& ocean, const Arrival& path, double frequency,
                                     int parts, std::uint64_t entity, double time = 0.0,
                                     Sea sea = Sea::isotropic, Vec2 from = Vec2::Zero()) {
-  const ScatteredLeg leg{&path, from, 0.5 * pi, time};
-  return forward_scatter(ocean, std::span(&leg, 1), frequency, parts, 1, entity, sea);
+  const RoughPath rough = rough_path(ocean, path, frequency, parts, 1, entity, sea);
+  const ScatteredLeg leg{&rough, from, 0.5 * pi, time};
+  return forward_scatter(ocean, std::span(&leg, 1), frequency, parts, 1, entity);
 }
 
 // E Σ|a|² = 1: 400 sums of 16 exponentials, 4.9 σ = 4.9/√6400.
@@ -220,6 +221,43 @@ TEST(ForwardScatter, ScintillatesAsRiceDoes) {
     const double share = path.scattered / (path.scattered + std::norm(path.amplitude));
     EXPECT_NEAR(scintillation(ocean, path, frequency), 1.0 - (1.0 - share) * (1.0 - share), 0.3)
         << frequency << ": " << share;
+  }
+}
+
+// A kink joins the path's ends by straight ways over a place of the boundary: as far apart and as
+// deep as the mirrored path's, longer than it by `excess`, and of one wave of the sea K is
+// k(cos θ₂ − cos θ₁). Those are two triangles, solved here by their angles. Rounding alone, which
+// tangents of angles of 10⁻³ make 10⁶ times as much.
+TEST(ForwardScatter, KinksJoinTheEnds) {
+  for (const auto& [wind, frequency] : {std::pair(4.0, 500.0), {15.0, 3500.0}}) {
+    const Environment ocean = under(wind);
+    const double k = 2.0 * pi * frequency / 1500.0;
+    const Arrival path = bounced(ocean, radians(6.0), 700.0, frequency);
+    const double length = path.path_length, grazing = path.bounces[0].grazing;
+    const RoughPath rough = rough_path(ocean, path, frequency, 500, 1, 5);
+    ASSERT_EQ(rough.bounces.size(), 1U);
+    ASSERT_EQ(rough.kinks.size(), 500U);
+    const double before = rough.bounces[0].along, after = length - before;
+    EXPECT_NEAR(before, after, 0.01);
+    const double d1 = before * std::sin(grazing), d2 = after * std::sin(grazing);
+    int one_by_one = 0, turned = 0;
+    for (const Kink& kink : rough.kinks) {
+      const double out = grazing + kink.out, in = out - kink.down;
+      ASSERT_GT(in, 0.0);
+      ASSERT_GT(out, 0.0);
+      turned += std::abs(kink.down) > 0.01 ? 1 : 0;
+      const double bowed = 0.5 * kink.aside * kink.aside * before * after / length;  // sideways
+      EXPECT_NEAR(kink.excess - bowed, d1 / std::sin(in) + d2 / std::sin(out) - length,
+                  1e-9 * length);
+      EXPECT_NEAR(d1 / std::tan(in) + d2 / std::tan(out), length * std::cos(grazing),
+                  1e-9 * length);
+      if (std::abs(kink.along_way - k * (std::cos(out) - std::cos(in))) < 1e-9 * k) ++one_by_one;
+    }
+    EXPECT_GT(turned, 250);
+    if (wind < 5.0)  // G² = 0.01: of 500 kinks fewer than 20 are of two waves
+      EXPECT_GT(one_by_one, 480);
+    else  // G² = 13
+      EXPECT_LT(one_by_one, 5);
   }
 }
 

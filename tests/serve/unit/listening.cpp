@@ -168,6 +168,38 @@ TEST(Listening, AChangeActsWhereAndWhenItHappens) {
   EXPECT_GE(changed_at(R"("sound_speed": {"kind": "isovelocity", "speed": 1490})", rounding), 6.5);
 }
 
+// An update that says what already is changes no bit of what is heard (a sound that is made again
+// has other rounding), makes no other scenario, and is no change that later ones must follow.
+TEST(Listening, AnUpdateThatChangesNothingCostsNothing) {
+  std::string text = support::served_scenario;
+  const std::string place = "position = [0.0, 0.0, 200.0]\n";
+  text.insert(text.find(place) + place.size(), "velocity = [0.0, 2.0, 0.0]\n");
+  const auto heard_with = [&](const std::vector<std::string>& updates) {
+    Heard heard(text);
+    heard.listen(0.001);
+    heard(R"({"command": "ping"})");
+    heard.listen(1.499);
+    const std::string key = heard.served.session().state().live.state().key;
+    for (const std::string& update : updates) {
+      const auto said = heard(R"({"command": "update", )" + update + "}");
+      EXPECT_FALSE(said.contains("sea_drawn_anew")) << update;
+      EXPECT_EQ(heard.served.session().state().live.state().key, key) << update;
+      EXPECT_EQ(heard.served.session().state().live.changed(), -infinity) << update;
+      heard.listen(0.25);
+    }
+    heard.listen(4.0 - 0.25 * double(updates.size()));
+    return heard.rows;
+  };
+  const auto plain = heard_with({});
+  const auto updated =
+      heard_with({R"("wind_speed": 8)", R"("targets": {"name": "rock", "strength_db": 10})",
+                  R"("targets": {"velocity": [0, 0, 0], "position": [3000, 0, 200]}, "seed": 3)",
+                  R"("array": {"spacing": 0.75}, "noise": {"spectral_level_db": 40})",
+                  R"("platform": {"heading_deg": 360, "speed": 2})",
+                  R"("platform": {"position": [0, 5.5, 200]}, "time": 2.75)"});
+  for (std::size_t c = 0; c < channels; ++c) EXPECT_EQ(updated[c], plain[c]);
+}
+
 // A change that is known beforehand changes nothing before it: not even the rounding of what a
 // change before it has made anew, in steps that end after it.
 TEST(Listening, AChangeThatIsKnownChangesNothingBefore) {

@@ -159,7 +159,7 @@ def with_loss(truth):
         held, ended = None, 0
         while ended < 2 * 3:  # each stream says three times that it has
             packet = ends[0].recv(65536)
-            _, _, kind, _, block, _, _ = HEADER.unpack_from(packet)
+            _, _, kind, _, block, *_ = HEADER.unpack_from(packet)
             ended += b'"ended":true' in packet
             if kind == 1 and lot.random() < 0.08:
                 dropped += 1
@@ -384,24 +384,75 @@ def keeps_what_is_not_its_own():
         client.quit()
 
 
+def described(stream, block=0, **more):
+    return json.dumps({"stream": f"{stream:016x}", "block": block, "time": 0, "sample_rate": 100, "channels": 1,
+                       "block_samples": 1000, "type": "float32", "arrays": [{"name": "a", "phones": 1}],
+                       "positions": [[0, 0, 0]], **more}).encode()
+
+
+def packet(kind, sequence, block, content, stream=7, fragment=0, fragments=1):
+    return HEADER.pack(b"AS", 2, kind, sequence % 2**32, block, fragment, fragments, stream) + content
+
+
+def is_bound_to_its_sender():
+    """A stranger's packets, whatever numbers they guess, neither give a block nor stop one; who comes
+    back after a long gap goes on at a descriptor; another sender is taken when this one is silent.
+    """
+    loud, quiet = np.full(250, 1e6, "<f4").tobytes(), bytes(1000)
+    reader = Assembler()
+    reader.take(packet(0, 0, 0, described(7)), "A", 0.0)
+    got = []
+    for n in range(40):  # three packets a block
+        for i in range(3):
+            got += reader.take(packet(1, 1 + 3 * n + i, n, bytes(1408 if i < 2 else 1184), 7, i, 3), "A", 0.1 * n)
+        for sequence in range(0, 2**32, 2**26):  # blindly; from its own place, too, without its number
+            for sender, stream in (("B", 7), ("B", 8), ("A", 8)):
+                got += reader.take(packet(1, sequence + 4, n + 1, loud, stream), sender, 0.1 * n)
+            got += reader.take(packet(0, sequence, n, described(9, n), 9), "B", 0.1 * n)
+    check([b.number for b in got] == list(range(40)) and not any(b.samples.any() for b in got), "its blocks alone")
+    check(reader.lost == reader.lost_blocks == reader.reordered == 0 and reader.others > 5000, "and the rest counted")
+    # Numbers that its descriptor does not allow: a block further on than so few packets can bring,
+    # more bytes than a block has, less than whole samples.
+    for sequence, block, content, fragments in ((200, 70, quiet, 1), (201, 41, bytes(1408), 4),
+                                                (202, 41, bytes(1001), 1)):
+        before = reader.foreign
+        check(not reader.take(packet(1, sequence, block, content, 7, 0, fragments), "A", 4.0), "no block")
+        check(reader.foreign == before + 1, (block, len(content), fragments))
+    # 200 000 packets later: what was lost is told, and it goes on.
+    check(not reader.take(packet(1, 200_001, 1000, quiet), "A", 9.0), "not before it is known where")
+    reader.take(packet(0, 200_002, 1001, described(7, 1001)), "A", 9.0)
+    (block,) = reader.take(packet(1, 200_003, 1001, quiet), "A", 9.0)
+    check(block.number == 1001 and block.lost == 961 and reader.lost_blocks == 961, f"{block.lost} lost")
+    check(not reader.take(packet(0, 5, 0, described(8), 8), "B", 13.9), "it is not silent so long")
+    check(reader.sender == "A", "it is kept")
+    reader.take(packet(0, 5, 0, described(8), 8), "B", 14.1)
+    check(reader.sender == "B" and len(reader.take(packet(1, 6, 0, quiet, 8), "B", 14.1)) == 1, "now it is")
+    # An end is told three times, and ends one stream; the next may be anyone's.
+    for i in range(3):
+        reader.take(packet(0, 7 + i, 1, described(8, 1, ended=True), 8), "B", 15.0)
+        check(reader.ended == (i == 0), "once")
+        reader.ended = False
+    reader.take(packet(0, 99, 0, described(7)), "A", 15.1)
+    check(reader.sender == "A", "at once")
+
+
 def stands_hostile_packets():
     lot = random.Random(9)
-    assembler = Assembler()
-    about = (b'{"stream":"x","block":0,"time":0,"sample_rate":100,"channels":1,"block_samples":1000,'
-             b'"type":"float32","arrays":[{"name":"a","phones":1}],"positions":[[0,0,0]]}')
-    assembler.take(HEADER.pack(b"AS", 1, 0, 0, 0, 0, 1) + about)
+    assembler, about = Assembler(), described(7)
+    assembler.take(packet(0, 0, 0, about))
     for i in range(200_000 if DEEP else 20_000):
-        header = [b"AS", 1, lot.randrange(2), lot.randrange(1 << lot.randrange(1, 33)),
-                  lot.randrange(1 << lot.randrange(1, 33)), lot.randrange(1 << lot.randrange(1, 17)),
-                  lot.randrange(1 << lot.randrange(1, 17))]
-        packet = HEADER.pack(*header) + lot.randbytes(lot.choice((1408, 1408, 5, 0)))
+        number = lot.choice((7, 7, 7, lot.randrange(1 << 64)))
+        sequence, block = (lot.randrange(1 << lot.randrange(1, 33)) for _ in range(2))
+        pieces = (lot.randrange(1 << lot.randrange(1, 17)) for _ in range(2))
+        one = packet(lot.randrange(2), sequence, block, lot.randbytes(lot.choice((1408, 1408, 5, 0))), number, *pieces)
         if i % 4 == 0:
-            packet = HEADER.pack(b"AS", 1, 0, i % 4096, 0, 0, 1) + about.replace(
-                bytes([lot.choice(about)]), bytes([lot.randrange(256)]), 1)
-        for block in assembler.take(packet):
-            check(block.samples.nbytes <= 4224, "no longer than a block")
-    assembler.take(HEADER.pack(b"AS", 1, 0, 0xA0000000, 7, 0, 1) + about.replace(b'"x"', b'"y"').replace(b"0", b"7", 1))
-    ((block),) = assembler.take(HEADER.pack(b"AS", 1, 1, 0xA0000001, 7, 0, 1) + bytes(400))
+            wrong = about.replace(bytes([lot.choice(about)]), bytes([lot.randrange(256)]), 1)
+            one = packet(0, i % 4096, 0, wrong, number)
+        for block in assembler.take(one):
+            check(block.samples.nbytes <= 4000, "no longer than a block")
+    check(len(assembler._own) + len(assembler._strange) <= 10, "what is not whole is bounded")
+    assembler.take(packet(0, 0xA0000000, 7, described(8, 7), 8), "B", 10.0)
+    ((block),) = assembler.take(packet(1, 0xA0000001, 7, bytes(400), 8), "B", 10.0)
     check(block.number == 7 and block.lost == 0 and block.samples.shape == (1, 100), "a stream after it is whole")
 
 
@@ -422,6 +473,7 @@ def main():
         listen_ends()
         one_at_a_time()
         keeps_what_is_not_its_own()
+        is_bound_to_its_sender()
         stands_hostile_packets()
         os.chdir("/")
 
