@@ -310,8 +310,8 @@ TEST_F(Commands, SettingsAreASchemaForEditors) {
   EXPECT_FALSE(scenario["properties"].contains("measure"));  // those are of studies
   const json study = json::parse(asdic(folder, "settings --schema measure.receiver").out);
   EXPECT_EQ(study["properties"]["measure"]["properties"]["receiver"]["properties"]
-                 ["false_alarm_probability"]["exclusiveMinimum"],
-            0.0);
+                 ["false_alarm_probability"]["minimum"],
+            1e-30);
 }
 
 TEST_F(Commands, LengthsAreTakenInKilometresAndMetres) {

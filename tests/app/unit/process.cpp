@@ -126,7 +126,7 @@ TEST_F(Process, SaysWhatIsWrong) {
   refused("process small.h5 --from 3000",
           "--from: found 3000 s, expected a time before the record");
   refused("process small.h5 --false-alarm-probability 2",
-          "--false-alarm-probability: found 2, expected a probability above 0 and at most 0.5");
+          "--false-alarm-probability: found 2, expected a probability from 1e-30 to 0.5");
   refused("process small.h5 -o none/out.h5", "a file in a folder that is there");
 }
 

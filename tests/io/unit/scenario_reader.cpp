@@ -290,7 +290,7 @@ const Fault faults[] = {
     {"NoPhones", "phones = 16", "phones = 0",
      "s.toml:23: array.phones: found 0, expected a whole number from 1 to 4096"},
     {"Missing", "frequency = 4000.0\n", "",
-     "s.toml:16: pulse.frequency: found nothing, expected a frequency above 0 and at most 1000000 "
+     "s.toml:16: pulse.frequency: found nothing, expected a frequency from 0.1 to 1000000 "
      "Hz"},
     {"MissingTable", "[platform]\nposition = [0.0, 0.0, 4500.0]\n", "",
      "s.toml:1: platform.position: found nothing, expected [east, north, depth] in m"},
@@ -329,7 +329,7 @@ const Fault faults[] = {
      "s.toml:5: environment.sound_speed.file: found no such file \"nowhere.csv\", expected a "
      "readable CSV file"},
     {"NegativeDepthOfWater", "depth = 5000.0\nkind", "depth = -5000.0\nkind",
-     "s.toml:8: environment.bottom.depth: found -5000 m, expected a depth above 0 and at most "
+     "s.toml:8: environment.bottom.depth: found -5000 m, expected a depth from 0.01 to "
      "12000 m"},
     {"PlatformBelowTheBottom", "[0.0, 0.0, 4500.0]", "[0.0, 0.0, 5500.0]",
      "s.toml:11: platform.position: found depth 5500 m at 0 s, expected a depth between the "
@@ -376,9 +376,9 @@ const Fault faults[] = {
     {"LastPingFirst", "strength_db = 15.0", "strength_db = 15.0\nfirst_ping = 3\nlast_ping = 2",
      "s.toml:31: target[0].last_ping: found 2, expected at least first_ping, 3"},
     {"ZeroDuration", "duration = 1.0", "duration = 0.0",
-     "s.toml:19: pulse.duration: found 0 s, expected a duration above 0 and at most 100000 s"},
+     "s.toml:19: pulse.duration: found 0 s, expected a duration from 1e-06 to 1000 s"},
     {"NegativeRecording", "recording_duration = 60", "recording_duration = -60",
-     "s.toml:32: pings.recording_duration: found -60 s, expected a duration above 0 and at most "
+     "s.toml:32: pings.recording_duration: found -60 s, expected a duration from 1e-06 to "
      "100000 s"},
     {"TooBigForMemory", "recording_duration = 60",
      "recording_duration = 4000\n[run]\nmemory = \"1 GB\"",
@@ -426,7 +426,7 @@ struct OverrideFault {
 TEST(ScenarioReader, WrongOverridesAreReportedAsSuch) {
   const OverrideFault wrong[] = {
       {"pulse.duration=-1",
-       "--set pulse.duration: found -1 s, expected a duration above 0 and at most 100000 s"},
+       "--set pulse.duration: found -1 s, expected a duration from 1e-06 to 1000 s"},
       {"pulse.duratoin=1",
        "--set pulse.duratoin: found an unknown key, expected a known key (did you mean "
        "\"duration\"?)"},

@@ -143,7 +143,7 @@ TEST(ScenarioRun, FaultsNameTheirKeys) {
   const std::string head = "[run]\nfrequency = 100\n[run.source]\ndepth = 50\n";
   const std::string receivers = "[run.receivers]\ndepth = 20\nrange = 1000\n";
   EXPECT_EQ(message("[run]\ntask = \"field\"\n"),
-            "r.toml:7: run.frequency: found nothing, expected a frequency above 0 and at most "
+            "r.toml:7: run.frequency: found nothing, expected a frequency from 0.001 to "
             "100000000 Hz");
   EXPECT_EQ(message(head),
             "r.toml:7: run.receivers.depth: found nothing, expected a depth from -1000000 to "

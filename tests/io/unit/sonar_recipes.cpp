@@ -242,7 +242,7 @@ TEST(SonarSettings, OfCppAreHeldAgainstTheSameRanges) {
   sonar.transmitters.resize(2);
   sonar.transmitters[1].pulse = PulseSettings{.waveform = Cw{-5.0}};
   EXPECT_EQ(fault(sonar),
-            "transmitter[1].pulse.frequency: -5 Hz, a frequency above 0 and at most 1000000 Hz");
+            "transmitter[1].pulse.frequency: -5 Hz, a frequency from 0.1 to 1000000 Hz");
   sonar.transmitters[1].pulse.reset();
   sonar.arrays = {line_array(3, 1.0, 0.0, 0.0)};
   sonar.targets.resize(1);

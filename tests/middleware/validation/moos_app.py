@@ -159,7 +159,7 @@ def test_refusals():
                     ("SIM_TARGET", b"\0\1", "found bytes"), ("TOWED_ARRAY_POSITIONS", "1,2", "phone 0"),
                     ("ACTIVE_SONAR_COMMAND", "elevation=high", "found \"high\""),
                     ("ACTIVE_SONAR_COMMAND", "transmitter=none", "transmitter"),
-                    ("ACTIVE_SONAR_COMMAND", "type=cw,centre=1000,duration=3000", "recording"),
+                    ("ACTIVE_SONAR_COMMAND", "type=cw,centre=1000,duration=900", "recording"),
                     ("BELLHOP_REQUEST", "{", "JSON"), ("SIM_TARGET", "name=a\nb,x=1,y=2", "printable")):
                 before = len(db.of("ACTIVE_SONAR_ERROR"))
                 db.post(key, value)

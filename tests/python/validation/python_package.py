@@ -90,7 +90,7 @@ class Settings(unittest.TestCase):
         self.assertIn("targets", dir(self.s))
         text = self.s.pulse.help("duration")
         self.assertIn("[s]", text)
-        self.assertIn("above 0", text)
+        self.assertIn("from 1e-06 to 1000", text)
         for path in asdic.settings():
             self.assertTrue(all(one.help for one in asdic.settings()[path]), path)
 

@@ -339,7 +339,7 @@ TEST(Session, RefusesInOneMessage) {
        "value: transmitter: found \"x\", expected the name of a transmitter"},
       {ping + R"("waveform": 5})", "value: waveform: found 5, expected a table"},
       {ping + R"("waveform": {"kind": "cw"}})",
-       "scenario: waveform.frequency: found nothing, expected a frequency above 0 and at most "
+       "scenario: waveform.frequency: found nothing, expected a frequency from 0.1 to "
        "1000000 Hz"},
       {ping + R"("waveform": {"kind": "file", "file": "/etc/passwd"}})",
        "file: waveform.file: found a file, expected none: the server was started without "
