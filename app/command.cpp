@@ -36,7 +36,7 @@ std::optional<T> whole_text(const std::string& text) {
 
 /// "above 0 to 0.5".
 std::string limits_of(const Quantity& q) {
-  std::string text = (q.above ? "above " : "") + to_text(q.low);
+  std::string text = (q.above ? "above " : q.or_zero ? "0, or " : "") + to_text(q.low);
   if (q.high < infinity) text += " to " + to_text(q.high);
   return text;
 }

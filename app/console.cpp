@@ -119,14 +119,17 @@ void draw_progress(const std::string& line) {
   standing = !line.empty();
 }
 
+void write_output(std::string_view bytes) {
+  if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size()) throw cannot_write();
+}
+
 void print(std::string_view text) {
   while (!text.empty()) {
     const auto end = std::min(text.find(bold), text.find(plain));
-    const std::string safe = printable_lines(text.substr(0, end));
-    if (std::fwrite(safe.data(), 1, safe.size(), stdout) != safe.size()) throw cannot_write();
+    write_output(printable_lines(text.substr(0, end)));
     if (end == std::string_view::npos) return;
     const std::string_view style = text.substr(end).starts_with(bold) ? bold : plain;
-    if (std::fwrite(style.data(), 1, style.size(), stdout) != style.size()) throw cannot_write();
+    write_output(style);
     text.remove_prefix(end + style.size());
   }
 }

@@ -33,6 +33,8 @@ void tell(const std::string& line);
 /// Draws a line of progress in place of the one before; "" takes it away.
 void draw_progress(const std::string& line);
 
+/// Writes bytes to standard output as they are. \throws RunError if they cannot be written
+void write_output(std::string_view bytes);
 /// Writes to standard output. \throws RunError if it cannot be written (a full disk)
 void print(std::string_view text);
 /// Hands everything to the system. \throws RunError as print()

@@ -42,7 +42,8 @@ std::vector<std::string> env_to_toml(const ConvertOptions& options) {
   const bellhop::MapScenario made = bellhop::map_scenario(input, maps.string());
   OutputFile scenario(options.output, rules_for(options.output, options.force));
   if (made.maps)
-    bellhop::write_maps(OutputFile(maps, {.own = own::hdf5, .force = options.force}), input);
+    bellhop::write_maps(
+        OutputFile(maps, {.own = own::hdf5, .worth = own::pings, .force = options.force}), input);
   scenario.write(std::string("# ") + own::remark + " convert.\n" + to_toml(made.run_case));
   std::vector<std::string> notes = input.notes;
   notes.insert(notes.end(), made.notes.begin(), made.notes.end());

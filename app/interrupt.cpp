@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "app/console.h"
+#include "io/files/unfinished.h"
 #include "raytrace/parallel/stop.h"
 
 namespace asdic::detail::app {
@@ -31,19 +32,27 @@ void on_all(void (*handler)(int)) {
   }
 }
 
+extern "C" void on_last_signal(int number) {
+  remove_unfinished();
+  signal(number, SIG_DFL);
+  raise(number);  // when this returns: whoever waits for the program sees what ended it
+}
+
 extern "C" void on_signal(int) {
   signalled = true;
-  on_all(SIG_DFL);  // the second is not ours, whichever it is
+  on_all(on_last_signal);  // the second, whichever it is
 }
 
 }  // namespace
+
+void end_cleanly_on_signals() { on_all(on_last_signal); }
 
 Interrupt::Interrupt() {
   signalled = false;
   on_all(on_signal);
 }
 
-Interrupt::~Interrupt() { on_all(SIG_DFL); }
+Interrupt::~Interrupt() { end_cleanly_on_signals(); }
 
 bool Interrupt::requested() noexcept { return signalled; }
 

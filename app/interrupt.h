@@ -8,6 +8,10 @@
 
 namespace asdic::detail::app {
 
+/// From now on SIGINT, SIGTERM and SIGHUP end the program at once, without what is of no use until
+/// it is whole (io/files/unfinished.h). One that was ignored stays so.
+void end_cleanly_on_signals();
+
 /// While it lives, the first SIGINT, SIGTERM or SIGHUP is noted, and the second ends the program at
 /// once. One that was ignored stays so: SIGINT of a shell's job in the background, SIGHUP under
 /// nohup. One at a time.

@@ -81,7 +81,9 @@ void check_existing(const std::filesystem::path& output, const std::string& iden
 int merge(const MergeOptions& options) {
   const study::Study study = study_of(options);
   std::vector<std::filesystem::path> parts(options.parts.begin(), options.parts.end());
-  OutputFile output(options.output, {.own = own::hdf5, .force = options.force, .inputs = parts});
+  OutputFile output(
+      options.output,
+      {.own = own::hdf5, .worth = own::pings, .force = options.force, .inputs = parts});
   if (!options.force) check_existing(options.output, study::identity(study));
   study::MergeOptions how = options.merge;
   if (!options.study.empty()) how.text = study.text;

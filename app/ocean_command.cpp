@@ -71,15 +71,20 @@ void check(const OceanOptions& options) {
 
 int ocean(const OceanOptions& options) {
   check(options);
+  const OceanSources sources = sources_of(options);
   std::optional<OutputFile> output, maps;
   if (!options.output.empty())
-    output.emplace(options.output, OutputRules{.own = own::scenario, .force = options.force});
+    output.emplace(
+        options.output,
+        OutputRules{.own = own::scenario, .force = options.force, .inputs = sources.paths()});
   if (options.area) {
     const std::filesystem::path name =
         std::filesystem::path(options.output).replace_extension(".nc");
-    maps.emplace(name, OutputRules{.own = own::hdf5, .force = options.force});
+    maps.emplace(name, OutputRules{.own = own::hdf5,
+                                   .worth = own::pings,
+                                   .force = options.force,
+                                   .inputs = sources.paths()});
   }
-  const OceanSources sources = sources_of(options);
   const OceanRequest request = request_of(options);
   OceanSample sample = sample_ocean(sources, request);
   std::optional<OceanSection> section;

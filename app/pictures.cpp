@@ -41,6 +41,7 @@ int run(const std::vector<std::string>& words) {
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
   pid_t child = 0;
+  setenv("HDF5_USE_FILE_LOCKING", "FALSE", 0);  // it reads alone, and some systems refuse locks
   if (const int error =
           posix_spawn(&child, words[0].c_str(), nullptr, nullptr, arguments.data(), environ))
     throw RunError(

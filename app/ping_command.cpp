@@ -18,6 +18,7 @@
 #include "app/progress_bar.h"
 #include "app/warn.h"
 #include "core/error.h"
+#include "io/hdf5/own_files.h"
 #include "io/ping/drawn_rays.h"
 #include "io/ping/provenance.h"
 #include "io/scenario/propagation.h"
@@ -57,9 +58,8 @@ int interrupted(int done, int count, const std::filesystem::path& output) {
 
 /// What runs that did not end have left of this output.
 void tell_of_parts(const std::filesystem::path& output) {
-  std::error_code gone;
   for (const std::filesystem::path& part : parts_of(output)) {
-    if (std::filesystem::file_size(part, gone) == 0 || gone) continue;
+    if (!own::pings(part)) continue;
     fmt::print(stderr,
                "asdic: note: {} is of a run that did not end; asdic recover makes a file of its "
                "pings\n",
@@ -181,6 +181,7 @@ int ping(const PingOptions& options) {
   }
   progress.reset();
   writer.finish(done == count);
+  if (!report.echo_beside_record().empty()) warn({report.echo_beside_record()});
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   if (!options.quiet && done > 0) {
     print(report.text(wall.count()));

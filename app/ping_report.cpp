@@ -6,6 +6,7 @@
 
 #include "core/units.h"
 #include "sonar/paths/enough_bounces.h"
+#include "sonar/ping/levels.h"
 #include "sonar/reverberation/phone_groups.h"
 #include "sonar/reverberation/reverberation_band.h"
 #include "sonar/scenario/sampling.h"
@@ -44,6 +45,9 @@ std::vector<std::string> summary_row(int ping, double elevation_deg, const Targe
 
 void PingReport::add(const PingRecord& record) {
   ++pings_;
+  if (beside_record_.empty())
+    beside_record_ = detail::echo_beside_record(record, scenario_,
+                                                Pulse(pulse_of(scenario_, record.transmitter)));
   for (const TargetSummary& target : record.summary) {
     if (lines_ == most_lines) {
       ++left_out_;

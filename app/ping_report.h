@@ -20,6 +20,8 @@ class PingReport {
   explicit PingReport(const Scenario& scenario) : scenario_(scenario) {}
 
   void add(const PingRecord& record);
+  /// The first echo that its record does not hold whole, as a warning; empty: none.
+  [[nodiscard]] const std::string& echo_beside_record() const noexcept { return beside_record_; }
   /// \param wall  of the whole run [s]
   [[nodiscard]] std::string text(double wall) const;
 
@@ -27,6 +29,7 @@ class PingReport {
   const Scenario& scenario_;
   Table table_{summary_columns()};
   bool sea_drawn_anew_ = false;
+  std::string beside_record_;
   std::size_t ended_searches_ = 0;
   Bounces bounces_;                // that were followed
   double band_error_ = 0.0;        // of reverberation, where it is more than asked for

@@ -168,7 +168,8 @@ void add_plot_command(Program& program) {
           command.add_option(one.option, one.word, one.help).type_name(one.type);
         command.add_flag("--html", options->html,
                          "of a ping file one page for a browser, which zooms and tells values, in "
-                         "place of pictures; -o names it (default: FILE.html); it holds all pings "
+                         "place of pictures; -o names it (NAME.html) or its folder "
+                         "(default: FILE.html); it holds all pings "
                          "and arrays, or those of --ping and --array");
         add_set_option(command, options->scenario);
         add_force_option(command, options->force);

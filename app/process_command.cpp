@@ -74,7 +74,8 @@ OutputFile file_output(const ProcessOptions& options) {
     return OutputFile(options.output, rules_for(options.output, options.force, options.file));
   static_cast<void>(Hdf5File::peek(options.file));  // says what is wrong with it, if anything
   const auto read_next = [](const std::filesystem::path&) { return true; };
-  return OutputFile(std::filesystem::canonical(options.file), {.own = read_next});
+  return OutputFile(std::filesystem::canonical(options.file),
+                    {.own = read_next, .worth = own::pings, .renews = true});
 }
 
 int process(const ProcessOptions& options) {

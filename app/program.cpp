@@ -12,6 +12,7 @@
 
 #include "app/command.h"
 #include "app/console.h"
+#include "app/interrupt.h"
 #include "core/error.h"
 #include "core/instruction_level.h"
 #include "core/printable.h"
@@ -50,6 +51,7 @@ int guarded(const std::function<void()>& act, std::string& said) {
 
 int run_program(const std::string& program, const std::function<int()>& act) {
   open_standard_streams();
+  end_cleanly_on_signals();
   signal(SIGXFSZ, SIG_IGN);  // a file over its limit is a failed write, told as any other
   std::string said;
   int status = success;

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "app/command.h"
+#include "app/console.h"
 #include "app/interrupt.h"
 #include "core/error.h"
 #include "io/ping/provenance.h"
@@ -97,15 +98,14 @@ int replay(const serve::SessionSettings& settings, const ServeOptions& options) 
   try {
     until_interrupted([&] {
       refused = serve::replay(settings, options.replay, [](const serve::Answer& answer) {
-        const std::string line = answer.line + '\n';
-        std::fwrite(line.data(), 1, line.size(), stdout);
-        std::fwrite(answer.samples.data(), sizeof(float), answer.samples.size(), stdout);
+        write_output(answer.line + '\n');
+        write_output({reinterpret_cast<const char*>(answer.samples.data()),
+                      answer.samples.size() * sizeof(float)});
       });
     });
   } catch (const Interrupted&) {
     throw RunError("interrupted");
   }
-  std::fflush(stdout);
   if (refused > 0)
     throw RunError(std::to_string(refused) + " commands were refused that had been carried out");
   return 0;

@@ -10,6 +10,7 @@
 #include "core/unit_text.h"
 #include "core/units.h"
 #include "io/scenario/catalogue.h"
+#include "io/settings/axis.h"
 
 namespace asdic::detail::app {
 namespace {
@@ -21,7 +22,9 @@ Json numeric(const char* type, const Quantity& q) {
   Json made{{"type", type}};
   if (q.low > -infinity) made[q.above ? "exclusiveMinimum" : "minimum"] = q.low;
   if (q.high < infinity) made["maximum"] = q.high;
-  return made;
+  if (!q.or_zero) return made;
+  const Json zero{{"enum", Json::array({0})}};
+  return {{"anyOf", Json::array({zero, made})}};
 }
 
 /// \param length  0: one item at least
@@ -70,7 +73,7 @@ Json value_schema(const SettingRecord& r) {
                 {"properties",
                  {{"first", number()},
                   {"last", number()},
-                  {"count", {{"type", "integer"}, {"minimum", 1}}}}},
+                  {"count", {{"type", "integer"}, {"minimum", 1}, {"maximum", most_on_an_axis}}}}},
                 {"required", {"first", "last", "count"}},
                 {"additionalProperties", false}};
       return any_of({number(), array_of(number()), std::move(even)});

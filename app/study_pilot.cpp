@@ -58,9 +58,14 @@ std::string whole_text(const Pilot& pilot, int threads) {
   const study::Predicted& all = pilot.processor;
   const std::string rows = count_of(pilot.count, "realisation");
   std::string text = fmt::format("whole      {}: {} of processor time", rows, duration(all.total));
-  if (std::isfinite(all.interval.low))
+  if (std::isfinite(all.interval.high))
     text += fmt::format(", {} to {} (95 %); journal and file come on top\n",
                         duration(all.interval.low), duration(all.interval.high));
+  else if (std::isfinite(all.interval.low))
+    text += fmt::format(
+        ", {} at the least (95 %); so few or so uneven rows set no upper bound; journal and file "
+        "come on top\n",
+        duration(all.interval.low));
   else
     text += "; of a single row nothing tells how sure that is\n";
   if (threads > 1)

@@ -1,9 +1,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <condition_variable>
+#include <ctime>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <stop_token>
+#include <thread>
 
 #include "app/command.h"
 #include "app/console.h"
@@ -17,6 +23,8 @@
 #include "io/text/csv_table.h"
 #include "io/text/material_text.h"
 #include "raytrace/cases/memory.h"
+#include "raytrace/parallel/progress.h"
+#include "raytrace/parallel/stop.h"
 #include "sonar/ping/ping.h"
 #include "sonar/ping/stream_parts.h"
 #include "sonar/scenario/sampling.h"
@@ -203,6 +211,30 @@ std::string all_text(const NotedSettings& noted) {
   return text;
 }
 
+/// Processor time that looking at the paths of a ping may take [s].
+constexpr double most_seconds = 4.0;
+
+/// Does some work, and calls it off when it has taken that. \return whether it came to its end
+bool done_in_time(const std::function<void()>& work) {
+  std::stop_source too_long;
+  std::mutex mutex;
+  std::condition_variable_any ended;
+  const std::clock_t begin = std::clock();
+  const std::jthread watch([&](const std::stop_token& over) {
+    std::unique_lock lock(mutex);
+    const auto spent = [&] { return double(std::clock() - begin) > most_seconds * CLOCKS_PER_SEC; };
+    while (!over.stop_requested() && !spent())
+      ended.wait_for(lock, over, std::chrono::milliseconds(50), [] { return false; });
+    if (!over.stop_requested()) too_long.request_stop();
+  });
+  try {
+    until_stopped(too_long.get_token(), work);
+    return true;
+  } catch (const Interrupted&) {
+    return false;
+  }
+}
+
 struct ValidateOptions : ScenarioChoice {
   bool all = false;
 };
@@ -241,9 +273,10 @@ int validate_sonar(const ValidateOptions& choice, const TomlValue& document) {
   PingSimulator simulator(read_scenario(choice.path, choice.overrides), nullptr,
                           read_budget(choice.path, choice.overrides));
   bar->doing("paths of a ping, for its memory");
-  const MemoryBudget memory = simulator.memory();  // before anything takes it
+  std::optional<MemoryBudget> memory;  // before anything takes it
+  bool judged = done_in_time([&] { memory = simulator.memory(); });
   bar->doing("paths that a ping may lack");
-  simulator.judge_paths();
+  judged = judged && done_in_time([&] { simulator.judge_paths(); });
   bar.reset();
   const Scenario& scenario = simulator.scenario();
   print(emphasised(scenario.title.empty() ? scenario.path : scenario.title) + '\n');
@@ -254,8 +287,14 @@ int validate_sonar(const ValidateOptions& choice, const TomlValue& document) {
              ? search_text(scenario.environment, scenario.area || scenario.environment.bottom.shape,
                            0, false)
              : "") +
-        size_text(simulator) + memory_text(memory, "a ping"));
+        size_text(simulator) +
+        (memory ? memory_text(*memory, "a ping") : "memory     of a ping: not known\n"));
   for (const std::string& note : scenario.notes) print("warning: " + note + '\n');
+  if (!judged)
+    print(fmt::format(
+        "warning: the paths of a ping take more than {:g} s of processor time and were not looked "
+        "at to the end: {}bounces or waves that a ping may lack are not known\n",
+        most_seconds, memory ? "" : "its memory, and "));
   print(choice.path + ": good\n");
   return 0;
 }

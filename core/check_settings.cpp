@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/quantities.h"
 #include "core/text.h"
 
 namespace asdic::detail {
@@ -77,11 +78,10 @@ void SettingsCheck::columns(std::initializer_list<Column> all, const ColumnRules
 }
 
 void SettingsCheck::sound(SettingKey, const Sound& sound, std::string_view) {
-  hold("sample_rate", {.noun = "sample rate", .unit = "Hz", .low = 0.0, .above = true},
-       *sound.sample_rate);
+  hold("sample_rate", quantity::sound_rate, *sound.sample_rate);
   if (sound.samples->size() < 2)
     fault("samples", "at least 2", std::to_string(sound.samples->size()) + " samples");
-  hold_all("samples", {.noun = "sample"}, *sound.samples);
+  hold_all("samples", quantity::sound_sample, *sound.samples);
 }
 
 void SettingsCheck::rows(const Setting& s, const Quantity& q,

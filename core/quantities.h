@@ -12,10 +12,19 @@ inline constexpr Quantity water_depth{
     .noun = "depth", .unit = "m", .low = -20000.0, .high = 20000.0};
 inline constexpr Quantity range{.noun = "range", .unit = "m", .low = -1e10, .high = 1e10};
 inline constexpr Quantity velocity{.noun = "velocity", .unit = "m/s", .low = -100.0, .high = 100.0};
-inline constexpr Quantity duration{
-    .noun = "duration", .unit = "s", .low = 0.0, .high = 1e5, .above = true};
-inline constexpr Quantity frequency{
-    .noun = "frequency", .unit = "Hz", .low = 0.0, .high = 1e6, .above = true};
+/// From a period of the highest frequency on.
+inline constexpr Quantity duration{.noun = "duration", .unit = "s", .low = 1e-6, .high = 1e5};
+inline constexpr Quantity pulse_duration{.noun = "duration", .unit = "s", .low = 1e-6, .high = 1e3};
+/// Of sound: from where the sea is shallow beside a wavelength.
+inline constexpr Quantity frequency{.noun = "frequency", .unit = "Hz", .low = 0.1, .high = 1e6};
+/// Of one frequency from another, and of what changes slowly.
+inline constexpr Quantity frequency_step{
+    .noun = "frequency", .unit = "Hz", .low = 1e-5, .high = 1e6};
+/// From one ping to the next.
+inline constexpr Quantity interval{.noun = "interval", .unit = "s", .low = 1e-6, .high = 1e7};
+/// Samples of a sound that a scenario holds, of any unit, and how many a second.
+inline constexpr Quantity sound_sample{.noun = "sample", .low = -1e30, .high = 1e30};
+inline constexpr Quantity sound_rate{.noun = "sample rate", .unit = "Hz", .low = 0.1, .high = 1e9};
 inline constexpr Quantity level{.noun = "level", .unit = "dB", .low = -300.0, .high = 400.0};
 constexpr Quantity level_re(std::string_view reference) {
   Quantity quantity = level;

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <limits>
 
+#include "core/quantities.h"
 #include "core/text.h"
 #include "core/unit_text.h"
 
@@ -36,7 +37,7 @@ std::string range_of(const Quantity& q) {
   if (low && high && q.above)
     text = "above " + to_text(q.low) + ", to " + to_text(q.high);
   else if (low && high)
-    text = to_text(q.low) + " to " + to_text(q.high);
+    text = (q.or_zero ? "0, or " : "") + to_text(q.low) + " to " + to_text(q.high);
   else if (low)
     text = (q.above ? "above " : "at least ") + to_text(q.low);
   else if (high)
@@ -46,9 +47,6 @@ std::string range_of(const Quantity& q) {
 }
 
 constexpr std::string_view file_key = "file";
-constexpr Quantity sample_rate{
-    .noun = "sample rate", .unit = "Hz", .low = 0.0, .high = 1e9, .above = true};
-
 std::string with_range(const std::string& what, const Quantity& q) {
   const std::string range = range_of(q);
   return range.empty() ? what : what + ", " + range;
@@ -105,7 +103,7 @@ void SettingsCatalogue::integer(const Setting& s, std::int64_t low, std::int64_t
                                 std::int64_t& value, bool* given) {
   const bool there = given == nullptr || *given;
   const double most =
-      high >= std::numeric_limits<std::int32_t>::max() ? infinity : static_cast<double>(high);
+      high == std::numeric_limits<std::int64_t>::max() ? infinity : static_cast<double>(high);
   add(s.key, s.help, Type::whole_number, there ? std::to_string(value) : "").quantity = {
       .noun = "number", .low = static_cast<double>(low), .high = most};
 }
@@ -175,8 +173,9 @@ void SettingsCatalogue::sound(SettingKey key, const Sound&, std::string_view wha
   const std::string of = "of " + std::string(what);
   Ways ways;
   if (const auto way = this->way(ways, {"samples", "sample_rate"}, false)) {
-    add(required("samples"), of + " as a program made it, in place of a file", Type::numbers, "");
-    add(required("sample_rate"), of, Type::number, "").quantity = sample_rate;
+    add(required("samples"), of + " as a program made it, in place of a file", Type::numbers, "")
+        .quantity = quantity::sound_sample;
+    add(required("sample_rate"), of, Type::number, "").quantity = quantity::sound_rate;
   }
   if (const auto way = otherwise(ways, {key.name}))
     add(key, "a WAV or CSV file " + of, Type::text, "");

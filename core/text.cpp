@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 #include <vector>
 
@@ -40,6 +41,24 @@ std::string to_text(double number) {
                                  plain ? std::chars_format::fixed : std::chars_format::general)
                        .ptr;
   return {buffer.data(), end};
+}
+
+std::string formatted_list(const char* format, std::va_list values) {
+  std::va_list again;
+  va_copy(again, values);
+  const int length = std::vsnprintf(nullptr, 0, format, values);
+  std::string text(static_cast<std::size_t>(std::max(length, 0)), '\0');
+  std::vsnprintf(text.data(), text.size() + 1, format, again);
+  va_end(again);
+  return text;
+}
+
+std::string formatted(const char* format, ...) {
+  std::va_list values;
+  va_start(values, format);
+  std::string text = formatted_list(format, values);
+  va_end(values);
+  return text;
 }
 
 std::string with_article(std::string_view noun) {

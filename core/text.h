@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdarg>
 #include <cstddef>
 #include <span>
 #include <string>
@@ -9,6 +10,10 @@ namespace asdic::detail {
 
 /// The shortest decimal that reads back as the same number.
 [[nodiscard]] std::string to_text(double number);
+
+/// As printf makes it, of any length: nothing is cut.
+[[nodiscard, gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...);
+[[nodiscard]] std::string formatted_list(const char* format, std::va_list values);
 
 /// "a depth", "an aspect".
 [[nodiscard]] std::string with_article(std::string_view noun);

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 namespace asdic::detail {
@@ -16,5 +17,11 @@ struct Utf8Character {
 
 /// All of a text is UTF-8.
 [[nodiscard]] bool is_utf8(std::string_view text);
+
+/// The beginning of a text that fits into so many bytes, of whole characters.
+[[nodiscard]] std::string_view cut_to_bytes(std::string_view text, std::size_t bytes);
+
+/// A text as UTF-8: U+FFFD stands for every byte that is none.
+[[nodiscard]] std::string as_utf8(std::string_view text);
 
 }  // namespace asdic::detail

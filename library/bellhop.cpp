@@ -24,7 +24,9 @@ BellhopCase read_bellhop(const std::filesystem::path& root, const std::filesyste
                 {.where = input.file,
                  .got = "a case of BELLHOP3D, over a map",
                  .expected = "\"maps\", the name of a file (.nc) where its maps go"});
-          bellhop::write_maps(detail::OutputFile(maps, {.own = detail::own::hdf5}), input);
+          bellhop::write_maps(
+              detail::OutputFile(maps, {.own = detail::own::hdf5, .worth = detail::own::pings}),
+              input);
         }
         std::vector<std::string> notes = input.notes;
         notes.insert(notes.end(), made.notes.begin(), made.notes.end());

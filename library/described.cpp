@@ -41,7 +41,7 @@ Setting shown(const detail::SettingRecord& record) {
           .unit = detail::unit_of(record.quantity),
           .lowest = record.quantity.low,
           .highest = record.quantity.high,
-          .above_lowest = record.quantity.above,
+          .or_zero = record.quantity.or_zero,
           .words = record.words,
           .length = record.length,
           .standard = record.standard,

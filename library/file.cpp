@@ -62,7 +62,8 @@ struct PingWriter::Data {
 PingWriter::PingWriter(const std::filesystem::path& path, const Scenario& scenario,
                        const Watch& watch)
     : data_(translated([&] {
-        detail::OutputFile output(path, {.own = detail::own::hdf5, .option = "path"});
+        detail::OutputFile output(
+            path, {.own = detail::own::hdf5, .worth = detail::own::pings, .option = "path"});
         const detail::PingSimulator& simulator = Access::physics(scenario).ready_to_ping(watch);
         detail::PingFileWriter writer(std::move(output), simulator.scenario(), here());
         writer.write_rays(detail::drawn_rays(simulator));
@@ -122,7 +123,8 @@ void write_scene(const std::filesystem::path& path, const Scenario& scenario) {
 std::vector<std::string> write_area(const std::filesystem::path& path, const Scenario& scenario,
                                     const AreaOptions& options, const Watch& watch) {
   return watched(watch, [&] {
-    detail::OutputFile output(path, {.own = detail::own::hdf5, .option = "path"});
+    detail::OutputFile output(
+        path, {.own = detail::own::hdf5, .worth = detail::own::pings, .option = "path"});
     const detail::PingSimulator& simulator = Access::physics(scenario).simulator();
     const detail::AreaWishes wishes{.depths = options.depths,
                                     .reach = options.reach,

@@ -51,8 +51,7 @@ void check(const OceanPlace& place) {
 Ocean ocean(const OceanPlace& place) {
   check(place);
   const detail::OceanSources sources = translated([&] { return sources_of(place); });
-  std::vector<std::filesystem::path> files;
-  for (const detail::DataFile& file : sources.all()) files.push_back(file.path);
+  const std::vector<std::filesystem::path> files = sources.paths();
   const auto work = [&] {
     const detail::OceanRequest request = request_of(place);
     detail::OceanSample sample = detail::sample_ocean(sources, request);
@@ -66,10 +65,14 @@ Ocean ocean(const OceanPlace& place) {
     if (place.area) {
       std::filesystem::path maps = place.output;
       maps.replace_extension(".nc");
-      detail::OutputFile fragment(place.output, {.own = detail::own::scenario, .option = "output"});
-      const detail::OceanArea area = detail::write_ocean_area(
-          sources, request, sample, *place.area,
-          detail::OutputFile(maps, {.own = detail::own::hdf5, .option = "output"}));
+      detail::OutputFile fragment(
+          place.output, {.own = detail::own::scenario, .inputs = files, .option = "output"});
+      const detail::OceanArea area =
+          detail::write_ocean_area(sources, request, sample, *place.area,
+                                   detail::OutputFile(maps, {.own = detail::own::hdf5,
+                                                             .worth = detail::own::pings,
+                                                             .inputs = files,
+                                                             .option = "output"}));
       fragment.write(detail::write_area_fragment(sample, area));
       add(area.notes);
       found.scenario = Scenario::read(place.output);

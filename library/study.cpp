@@ -153,6 +153,7 @@ std::vector<std::string> write_placement(const std::filesystem::path& output,
       [&] {
         const detail::study::PlacementPlan read = detail::study::read_placement(plan, changes);
         detail::OutputRules rules{.own = detail::own::hdf5, .inputs = {plan}, .option = "output"};
+        rules.worth = detail::own::pings;
         for (const auto& option : read.options) rules.inputs.push_back(option.path);
         detail::OutputFile file(output, rules);
         const detail::study::Placement found =

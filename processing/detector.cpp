@@ -105,7 +105,8 @@ class Search {
         ridge_(-doppler_answer(replica, 1.0 + 0.25 * doppler_cell_, settings.sub_bands).delay /
                (0.25 * doppler_cell_)) {
     if (bank_.filters() < 3) return;
-    finder_ = FactorFinder(replica, step_of(bank_), doppler_cell_, settings.sub_bands);
+    finder_ =
+        FactorFinder(replica, step_of(bank_), bank_.filters(), doppler_cell_, settings.sub_bands);
   }
 
   DetectorResult run(std::span<const Probe> probes, const std::function<bool()>& proceed) {

@@ -241,13 +241,16 @@ class FactorFinder::Simulation {
   std::vector<Eigen::MatrixXcd> noise_;   // [offsets] root of their covariance
 };
 
-FactorFinder::FactorFinder(const Replica& replica, double step, double cell, int sub_bands)
+FactorFinder::FactorFinder(const Replica& replica, double step, std::size_t filters, double cell,
+                           int sub_bands)
     : step_(step), cell_(cell) {
-  // So far apart that a pulse which loses by |offset| alone is not told by its top's jitter.
+  // So far apart that a pulse which loses by |offset| alone is not told by its top's jitter; a bank
+  // that reaches less far has no such filters.
   constexpr double wide = 0.27;
-  aside_ = static_cast<std::size_t>(std::max(1.0, std::round(wide * 2.0 * cell / step)));
+  const double wanted = std::max(1.0, std::round(wide * 2.0 * cell / step));
+  late_ = RidgeDelay(replica, wanted * step, sub_bands);
+  aside_ = static_cast<std::size_t>(std::min(wanted, static_cast<double>((filters - 1) / 2)));
   const double apart = static_cast<double>(aside_) * step;
-  late_ = RidgeDelay(replica, apart, sub_bands);
   close_ = FactorEstimate(replica, step, cell, sub_bands);
   const auto side = static_cast<std::ptrdiff_t>(2 * aside_ + 1);
   const Simulation simulation(replica, step, late_, side, sub_bands);

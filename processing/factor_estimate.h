@@ -85,8 +85,10 @@ struct FactorFound {
 class FactorFinder {
  public:
   FactorFinder() = default;
-  /// \param step  of the bank's factors   \param cell  as of doppler_cell()
-  FactorFinder(const Replica& replica, double step, double cell, int sub_bands);
+  /// \param step  of the bank's factors   \param filters  of the bank, three at least
+  /// \param cell  as of doppler_cell()
+  FactorFinder(const Replica& replica, double step, std::size_t filters, double cell,
+               int sub_bands);
 
   [[nodiscard]] const RidgeDelay& late() const noexcept { return late_; }
 

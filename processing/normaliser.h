@@ -19,7 +19,7 @@ constexpr std::span<const std::string_view> words(Normaliser /*any*/) { return n
 
 /// Of a cell of Rayleigh background.
 inline constexpr Quantity false_alarm_probability_of_cell{
-    .noun = "probability", .low = 0.0, .high = 0.5, .above = true};
+    .noun = "probability", .low = 1e-30, .high = 0.5};
 
 class Fields;
 

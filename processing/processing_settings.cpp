@@ -18,8 +18,8 @@ namespace {
 constexpr Quantity cells_beside{.noun = "number of cells", .low = 0.0, .high = 1e5};
 constexpr Quantity cells_averaged{.noun = "number of cells", .low = 1.0, .high = 1e5};
 constexpr Quantity reached_speed{.noun = "speed", .unit = "m/s", .low = 0.0, .high = 600.0};
-constexpr Quantity target_speed{.noun = "speed", .unit = "m/s", .low = 0.0, .above = true};
-constexpr Quantity since_ping{.noun = "time", .unit = "s", .low = 0.0};
+constexpr Quantity target_speed{.noun = "speed", .unit = "m/s", .low = 1e-3, .high = 1e4};
+constexpr Quantity since_ping{.noun = "time", .unit = "s", .low = 0.0, .high = 1e9};
 
 /// Two numbers with a sign between: "3/4", "-20:20".
 std::optional<std::pair<double, double>> two_numbers(const std::string& text, char sign) {
@@ -100,7 +100,7 @@ void ProcessingSettings::describe(Fields& field) {
         "where echoes come while the transmitter sends on");
   field("until", detector.last_time, since_ping,
         "nor after; default: the record's end, less the pulse where the transmitter sends on");
-  field("target_depth", target_depth, {.noun = "depth", .unit = "m", .low = 0.0},
+  field("target_depth", target_depth, quantity::depth,
         "depth of what answers; default: where the ray came from if the array tells elevation, "
         "else 100 m");
   field("range_speed", range_speed, {.noun = "speed", .unit = "m/s", .low = 1000.0, .high = 2000.0},
@@ -128,7 +128,7 @@ void TrackerSettings::describe(Fields& field) {
   describe_start(field, *this);
   field("track_stop", stop_misses, 1, 1000, "and ends after so many pings without a hit");
   field("track_acceleration", acceleration,
-        {.noun = "acceleration", .unit = "m/s2 sqrt(s)", .low = 0.0, .above = true},
+        {.noun = "acceleration", .unit = "m/s2 sqrt(s)", .low = 1e-6, .high = 1e6},
         "of targets, root of its density");
   field("track_max_speed", max_speed, target_speed, "of targets");
 }

@@ -139,7 +139,7 @@ std::string ping_line(const ServedPing& served, const PingRecord& record,
   line["timings"] = timings(record.timings, served.prepare);
   add_warnings(scenario, line);
   add_left_out(record.bounces, scenario, line);
-  if (!served.warning.empty()) line["warnings"].push_back(served.warning);
+  for (const std::string& warning : served.warnings) line["warnings"].push_back(warning);
   if (const std::string lack = ended_early(record.ended_searches); !lack.empty())
     line["warnings"].push_back(lack);
   if (record.sea_drawn_anew) line["sea_drawn_anew"] = true;
@@ -273,7 +273,7 @@ std::string levels_line(const ServedPing& served, const PingRecord& record,
   line["levels"]["time_step"] = series.time_step;
   add_warnings(scenario, line);
   add_left_out(record.bounces, scenario, line);
-  if (!served.warning.empty()) line["warnings"].push_back(served.warning);
+  for (const std::string& warning : served.warnings) line["warnings"].push_back(warning);
   if (const std::string lack = ended_early(record.ended_searches); !lack.empty())
     line["warnings"].push_back(lack);
   return text(line);

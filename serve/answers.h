@@ -24,8 +24,8 @@ struct ServedPing {
   double prepare = 0.0;       ///< scenario read, simulator built [s]
   double latency = 0.0;       ///< from when it was to be sent to when its data were complete [s]
   double behind = 0.0;        ///< it was sent so long after its time [s]
-  std::string warning;        ///< about this ping; empty: none
-  bool scheduled = false;     ///< by the schedule: it answers no command
+  std::vector<std::string> warnings = {};  ///< about this ping
+  bool scheduled = false;                  ///< by the schedule: it answers no command
 };
 
 /// A block of what is heard, and its samples, which go to its sink if it has one.

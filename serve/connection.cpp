@@ -53,6 +53,7 @@ class Connection::Impl {
   }
 
   [[nodiscard]] const std::string& refused() const noexcept { return refused_; }
+  [[nodiscard]] std::error_code unwritten() const noexcept { return unwritten_; }
 
   void turn_away() {
     tick();
@@ -199,6 +200,8 @@ class Connection::Impl {
   void written(std::error_code error, std::size_t bytes) {
     writing_ = false;
     if (error) {
+      if (error != asio::error::broken_pipe && error != asio::error::operation_aborted)
+        unwritten_ = error;
       drop();
       return forget_answers();
     }
@@ -322,6 +325,7 @@ class Connection::Impl {
   double active_;  // when the client last sent or took something [s]
   double leaves_at_ = 0.0;
 
+  std::error_code unwritten_;
   std::string refused_;    // why the handshake was
   bool waits_ = false;     // the client would rather wait than be told "busy"
   bool reading_ = false;   // a read is under way
@@ -347,5 +351,6 @@ void Connection::turn_away() { impl_->turn_away(); }
 void Connection::displace() { impl_->displace(); }
 void Connection::stop() { impl_->stop(); }
 const std::string& Connection::refused() const noexcept { return impl_->refused(); }
+std::error_code Connection::unwritten() const noexcept { return impl_->unwritten(); }
 
 }  // namespace asdic::detail::serve

@@ -2,6 +2,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <system_error>
 
 #include "serve/session_worker.h"
 
@@ -40,6 +41,8 @@ class Connection {
   void stop();
   /// Why the client's handshake was refused; "": it was not.
   [[nodiscard]] const std::string& refused() const noexcept;
+  /// Why answers could not be written, but for a client that has gone.
+  [[nodiscard]] std::error_code unwritten() const noexcept;
 
  private:
   class Impl;

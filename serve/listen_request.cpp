@@ -10,8 +10,7 @@ namespace asdic::detail::serve {
 void ListenRequest::describe(Fields& field) {
   field("block", block, {.noun = "duration", .unit = "s", .low = 1e-3, .high = 60.0},
         "of the samples that come together");
-  field("seconds", seconds,
-        {.noun = "duration", .unit = "s", .low = 0.0, .high = 1e9, .above = true},
+  field("seconds", seconds, {.noun = "duration", .unit = "s", .low = 1e-6, .high = 1e9},
         "of what is heard; default, by the clock alone: without end");
   field("schedule", schedule,
         "whether the pings of the scenario's schedule are sent by themselves");

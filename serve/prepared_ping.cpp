@@ -47,9 +47,9 @@ PreparedPing prepare_ping(SessionState& session, const Command& command, Deliver
   ping.simulator = session.simulator_of(session.live.with(ping.request.changes, command.fields));
   check_places(ping.simulator->scenario(), ping.number, ping.sent.transmitter, ping.sent.time);
   if (ping.sent.time < session.live.changed())
-    ping.served.warning = "time: " + to_text(ping.sent.time) +
-                          " s lies before the latest change, at " +
-                          to_text(session.live.changed()) + " s: all is as that says, back in time";
+    ping.served.warnings.push_back(
+        "time: " + to_text(ping.sent.time) + " s lies before the latest change, at " +
+        to_text(session.live.changed()) + " s: all is as that says, back in time");
   ping.served.prepare = session.clock() - begin;
   return ping;
 }

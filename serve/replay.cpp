@@ -1,15 +1,16 @@
 #include "serve/replay.h"
 
 #include <chrono>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "core/error.h"
+#include "io/files/input_file.h"
 #include "serve/answers.h"
 #include "serve/hand_out.h"
+#include "serve/line_splitter.h"
 #include "serve/sent_ping.h"
 #include "serve/session.h"
 
@@ -23,6 +24,12 @@ using Tell = std::function<void(const Answer&)>;
 struct Wrong {
   std::string got, expected = "what --log has written";
 };
+
+/// As a log has them: what a client may send, with every number written out, and its times.
+std::size_t longest_line(const SessionSettings& settings) {
+  constexpr std::size_t longer = 8, times = 4096;
+  return longer * settings.limits.line_bytes + CommandLog::first_line(settings).size() + times;
+}
 
 bool is_whole(const LogJson& entry, const char* key) {
   return entry.contains(key) && entry[key].is_number_integer();
@@ -146,15 +153,15 @@ std::size_t replay(const SessionSettings& settings, const std::filesystem::path&
          .got = what.got,
          .expected = what.expected});
   };
-  std::ifstream file(log);
-  if (!file) throw wrong(0, {"a file that cannot be read"});
+  InputFile file(log, "a log of commands that --log has written");
   Replay again(settings, tell);
   std::size_t number = 0;
-  for (std::string line; std::getline(file, line) && !file.eof();) {  // a last one may be torn
+  LineSplitter lines(longest_line(settings));
+  const auto take = [&](const LineSplitter::Line& line) {
     ++number;
-    const LogJson entry = LogJson::parse(line, nullptr, false);
+    const LogJson entry = LogJson::parse(line.text, nullptr, false);
     try {
-      if (!entry.is_object()) throw Wrong{"another line"};
+      if (line.too_long || !entry.is_object()) throw Wrong{"another line"};
       if (number == 1)
         again.first_line(entry);
       else
@@ -162,7 +169,11 @@ std::size_t replay(const SessionSettings& settings, const std::filesystem::path&
     } catch (const Wrong& what) {
       throw wrong(number, what);
     }
-  }
+  };
+  constexpr std::size_t piece = 65536;
+  for (std::string bytes = file.read(piece); !bytes.empty(); bytes = file.read(piece))
+    for (std::string_view rest = bytes; !rest.empty();)  // a last line may be torn: it is left out
+      if (const auto line = lines.take(rest)) take(*line);
   if (number == 0) throw wrong(0, {"an empty file"});
   again.rest();
   return again.refused();

@@ -70,6 +70,7 @@ class Server::Impl {
     if (mine < 0 || theirs < 0) throw RunError("standard input or output is closed");
     open({.in = mine, .out = theirs, .socket = false, .token = ""}, of_socket_, false);
     io_.run();
+    if (unwritten_) throw RunError("standard output: " + unwritten_.message());
     if (refused_)
       throw InputError({.where = "standard input: first line",
                         .got = "another",
@@ -177,6 +178,7 @@ class Server::Impl {
     };
     place->connection = std::make_unique<Connection>(io_, engine_, ends, [this, place, &places] {
       refused_ = refused_ || !place->connection->refused().empty();
+      unwritten_ = place->connection->unwritten();
       places.clients.erase(place);
     });
     if (full) {
@@ -208,7 +210,8 @@ class Server::Impl {
   asio::steady_timer pause_;
   std::unique_ptr<SocketName> name_;
   Places of_socket_, of_tcp_;
-  bool refused_ = false;  // the handshake of one of them
+  bool refused_ = false;       // the handshake of one of them
+  std::error_code unwritten_;  // of the answers of the last that has ended
   bool stopping_ = false;
 };
 

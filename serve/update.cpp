@@ -66,7 +66,7 @@ bool same_value(const TomlValue& a, const TomlValue& b) {
   if (const auto* items = std::get_if<TomlValue::Array>(&a.data))
     return std::ranges::equal(*items, std::get<TomlValue::Array>(b.data), same_value);
   if (const auto* entries = a.table())
-    return entries->size() == b.table()->size() &&
+    return entries->size() == std::get<TomlValue::Table>(b.data).size() &&
            std::ranges::all_of(*entries, [&](const TomlEntry& entry) {
              const TomlValue* other = b.find(entry.key);
              return other != nullptr && same_value(entry.value, *other);

@@ -3,6 +3,7 @@
 #include <cstdarg>
 #include <cstdio>
 
+#include "core/text.h"
 #include "core/units.h"
 #include "io/bellhop/case_parts.h"
 
@@ -13,12 +14,10 @@ namespace {
 class Lines {
  public:
   [[gnu::format(printf, 2, 3)]] void add(const char* format, ...) {
-    char line[256];
     std::va_list values;
     va_start(values, format);
-    std::vsnprintf(line, sizeof line, format, values);
+    text_ += formatted_list(format, values) + '\n';
     va_end(values);
-    text_.append(line).append("\n");
   }
   [[nodiscard]] std::string text() && { return std::move(text_); }
 

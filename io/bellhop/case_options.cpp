@@ -1,6 +1,7 @@
 // Part of case_parts.h: the head of an .env file, and its letters of options.
 #include <cmath>
 
+#include "core/utf8.h"
 #include "io/bellhop/case_parts.h"
 
 namespace asdic::detail::bellhop {
@@ -103,7 +104,7 @@ void read_head(CaseReading& reading) {
   env.begin("title");
   env.text(run_case.title, "");
   env.end();
-  run_case.title.resize(std::min<std::size_t>(run_case.title.size(), 80));
+  run_case.title = cut_to_bytes(run_case.title, 80);
   while (!run_case.title.empty() && run_case.title.back() == ' ') run_case.title.pop_back();
 
   env.begin("frequency");

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/utf8.h"
 
 namespace asdic::detail::bellhop {
 namespace {
@@ -67,7 +68,7 @@ std::optional<double> fortran_number(std::string_view text) noexcept {
 std::string shown(std::string_view text) {
   constexpr std::size_t longest = 40;
   std::string result = "\"";
-  for (const char c : text.substr(0, longest))
+  for (const char c : cut_to_bytes(text, longest))
     result += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
   return result + (text.size() > longest ? "...\"" : "\"");
 }

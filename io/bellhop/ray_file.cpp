@@ -1,6 +1,7 @@
 // Rays of bellhop_files.h: .ray.
 #include <cmath>
 
+#include "core/utf8.h"
 #include "io/bellhop/bellhop_files.h"
 #include "io/bellhop/fortran_format.h"
 #include "io/bellhop/list_reader.h"
@@ -58,7 +59,7 @@ RayFile parse_ray_file(std::string_view bytes, const std::string& name) {
 }
 
 std::string ray_file_bytes(const RayFile& file) {
-  std::string title = file.title;
+  std::string title(cut_to_bytes(file.title, 50));
   title.resize(50, ' ');
   std::string text = " '" + title + "'\n";
   const auto integers = [&](std::initializer_list<std::int64_t> values) {

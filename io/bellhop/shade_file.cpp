@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/utf8.h"
 #include "io/bellhop/bellhop_files.h"
 #include "io/bellhop/binary.h"
 #include "io/bellhop/finite_field.h"
@@ -176,7 +177,7 @@ std::string shade_file_bytes(const ShadeFile& shade) {
   std::string bytes;
   bytes.reserve(length * (10 + rows));
   put(bytes, static_cast<std::int32_t>(words));
-  std::string title = shade.title;
+  std::string title(cut_to_bytes(shade.title, 80));
   title.resize(80, ' ');
   bytes += title;
   put_record(bytes, 2, length, shade.irregular ? "irregular " : "rectilin  ");

@@ -7,8 +7,8 @@
 
 #include "core/error.h"
 #include "core/text.h"
-#include "io/files/files_read.h"
 #include "io/files/input_file.h"
+#include "io/files/output_lock.h"
 #include "io/hdf5/gate.h"
 #include "io/hdf5/handles.h"
 #include "io/isolated/child.h"
@@ -19,6 +19,8 @@ namespace {
 
 /// What else a user may have named: it says how to make netCDF of it.
 std::string advice_of(const std::filesystem::path& path) {
+  if (refuses_locks(path))
+    return "HDF5_USE_FILE_LOCKING=FALSE in the environment: the file system there has no locks";
   const std::string start = InputFile(path, "a netCDF file").read(4);
   using namespace std::string_literals;
   if (start == "II*\0"s || start == "MM\0*"s || start == "II+\0"s || start == "MM\0+"s)
@@ -33,7 +35,6 @@ std::string advice_of(const std::filesystem::path& path) {
 
 NetcdfFile::NetcdfFile(const std::filesystem::path& path) : path_(path) {
   hdf5::check_contents(path);  // of netCDF-4
-  note_read(path);
   if (const int status = nc_open(path.c_str(), NC_NOWRITE, &id_); status != NC_NOERR) {
     id_ = -1;
     throw InputError(

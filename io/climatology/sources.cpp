@@ -33,6 +33,12 @@ std::vector<DataFile> OceanSources::all() const {
   return files;
 }
 
+std::vector<std::filesystem::path> OceanSources::paths() const {
+  std::vector<std::filesystem::path> paths;
+  for (const DataFile& file : all()) paths.push_back(file.path);
+  return paths;
+}
+
 OceanSources default_ocean_sources(const std::filesystem::path& directory) {
   const DataFile levitus{directory / "levitus_climatology.cdf"};
   const DataFile coads{directory / "coads_climatology.cdf"};

@@ -28,6 +28,8 @@ struct OceanSources {
   std::vector<DataFile> sediment{};                 ///< grain sizes or classes; {}: by depth
 
   [[nodiscard]] std::vector<DataFile> all() const;
+  /// Their paths: what no result is written over.
+  [[nodiscard]] std::vector<std::filesystem::path> paths() const;
 };
 
 /// Levitus' temperature and salinity, ETOPO5 and, where it is there, COADS' wind, as Debian's

@@ -49,13 +49,13 @@ std::string what_is_at(const std::filesystem::path& path) {
 }
 
 void require_file(const std::filesystem::path& path, const std::string& expected) {
+  note_read(path);
   struct stat status {};
   check(stat(path.c_str(), &status), status, path, expected);
 }
 
 InputFile::InputFile(const std::filesystem::path& path, const std::string& expected)
     : path_(path), expected_(expected) {
-  note_read(path);
   require_file(path, expected);  // opening a device may already do something
   descriptor_ = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
   if (descriptor_ < 0) throw fault(path, reason(errno), expected);

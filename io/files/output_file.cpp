@@ -134,7 +134,8 @@ OutputFile::OutputFile(OutputFile&& other) noexcept
       rules_(std::move(other.rules_)),
       lock_(std::move(other.lock_)),
       part_(std::exchange(other.part_, fs::path())),
-      kept_(other.kept_) {}
+      kept_(other.kept_),
+      unfinished_(std::move(other.unfinished_)) {}
 
 OutputFile::~OutputFile() {
   if (part_.empty() || kept_) return;
@@ -149,6 +150,7 @@ const fs::path& OutputFile::part() {
     if (file < 0 && errno == EEXIST) continue;
     if (file < 0) throw RunError(name.string() + ": " + std::strerror(errno));
     close(file);
+    unfinished_.emplace(name);
     part_ = std::move(name);
   }
   return part_;
@@ -163,11 +165,14 @@ void OutputFile::finish() {
   const fs::path part = this->part();
   synchronise(part);
   const auto left = [&](const std::string& why) {
-    kept_ = true;
+    keep();
     return RunError(why + "; the result is in " + part.string());
   };
   try {
-    if (check_place(target_, rules_)) check_owner(target_, rules_);
+    if (check_place(target_, rules_)) {
+      if (!rules_.renews) check_input(target_, rules_);
+      check_owner(target_, rules_);
+    }
   } catch (const InputError& error) {
     throw left(error.what());
   }
@@ -175,7 +180,11 @@ void OutputFile::finish() {
   fs::rename(part, target_, error);
   if (error) throw left(target_.string() + ": " + error.message());
   part_.clear();
+  unfinished_.reset();
   synchronise(folder_of(target_));
+  if (!lock_.alone()) return;  // a part may be of a run that goes on
+  for (const fs::path& old : parts_of(target_))
+    if (rules_.worth == nullptr || !rules_.worth(old)) fs::remove(old, error);
 }
 
 std::vector<fs::path> parts_of(const fs::path& target) {

@@ -1,10 +1,12 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "io/files/output_lock.h"
+#include "io/files/unfinished.h"
 
 namespace asdic::detail {
 
@@ -14,10 +16,13 @@ using Recognise = bool (*)(const std::filesystem::path& path);
 
 /// What a result may be written over.
 struct OutputRules {
-  Recognise own = nullptr;                      ///< what counts as ours; none: no file
-  bool force = false;                           ///< any file, but never one of those below
+  Recognise own = nullptr;    ///< what counts as ours; none: no file
+  Recognise worth = nullptr;  ///< parts of runs that did not end which are kept; none: no part is
+  bool force = false;         ///< any file, but never one of those below
   std::vector<std::filesystem::path> inputs{};  ///< that the run reads, beside those it has read
-  std::string option = "--output";              ///< that names the result, for messages
+  /// The run itself reads what is there before it writes it anew: that makes it no input.
+  bool renews = false;
+  std::string option = "--output";  ///< that names the result, for messages
 };
 
 /// That a result may have a name: in a folder that is there, not a folder, link, device, FIFO or
@@ -29,7 +34,9 @@ void check_output(const std::filesystem::path& target, const OutputRules& rules)
 ///
 /// It is written beside its target under a name that nobody had before (TARGET.k3f9.part), brought
 /// to the disk, and renamed. Nobody else writes the same target meanwhile (OutputLock). Without
-/// finish() the part goes, and only the part.
+/// finish() the part goes, and only the part. A signal that ends the program takes the part away
+/// (Unfinished); what `kill -9` has left goes when the next run of this target is whole, unless it
+/// is worth something.
 class OutputFile {
  public:
   /// Before the work: checks the target and takes the lock. \throws InputError, RunError
@@ -42,7 +49,10 @@ class OutputFile {
   /// Where to write: an empty file, made by the first call. \throws RunError
   [[nodiscard]] const std::filesystem::path& part();
   /// It is worth something though it is not whole: without finish() it stays.
-  void keep() noexcept { kept_ = true; }
+  void keep() noexcept {
+    kept_ = true;
+    unfinished_.reset();
+  }
   /// All of it at once, and finish(). \throws RunError
   void write(std::string_view bytes);
   /// Brings the part to the disk and gives it its name. If that fails, or somebody has put a file
@@ -55,6 +65,7 @@ class OutputFile {
   OutputLock lock_;
   std::filesystem::path part_{};  ///< "": not made, or renamed
   bool kept_ = false;
+  std::optional<Unfinished> unfinished_{};  ///< the part, until it is worth something
 };
 
 /// Parts of a target that other runs have left, sorted by name.

@@ -42,10 +42,6 @@ std::string content(int file) {
   return line.substr(0, line.find('\n'));
 }
 
-bool no_locks_here(int error) {
-  return error == ENOLCK || error == ENOSYS || error == EOPNOTSUPP || error == EINVAL;
-}
-
 /// Whether a path still leads to an open file: its last owner may have taken it away.
 bool is_named(int file, const std::filesystem::path& path) {
   struct stat open_one = {}, named = {};
@@ -72,6 +68,20 @@ RunError at_work(const std::filesystem::path& target, const std::string& said) {
 
 }  // namespace
 
+bool says_no_locks(int error) noexcept {
+  return error == ENOLCK || error == ENOSYS || error == EOPNOTSUPP || error == EINVAL;
+}
+
+bool refuses_locks(const std::filesystem::path& path) {
+  const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+  if (file.file < 0) return false;
+  struct flock whole = {};
+  whole.l_type = F_RDLCK;
+  whole.l_whence = SEEK_SET;
+  const auto refused = [](int result) { return result != 0 && says_no_locks(errno); };
+  return refused(flock(file.file, LOCK_SH | LOCK_NB)) || refused(fcntl(file.file, F_SETLK, &whole));
+}
+
 OutputLock::OutputLock(const std::filesystem::path& target) : path_(target.string() + ".lock") {
   // another may just be ending
   const auto enough = std::chrono::steady_clock::now() + std::chrono::seconds(1);
@@ -79,7 +89,8 @@ OutputLock::OutputLock(const std::filesystem::path& target) : path_(target.strin
     Descriptor lock(
         open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666));
     if (lock.file < 0) throw RunError(path_.string() + ": " + std::strerror(errno));
-    if (flock(lock.file, LOCK_EX | LOCK_NB) != 0 && !no_locks_here(errno)) {
+    alone_ = flock(lock.file, LOCK_EX | LOCK_NB) == 0;
+    if (!alone_ && !says_no_locks(errno)) {
       if (errno != EWOULDBLOCK && errno != EINTR)
         throw RunError(path_.string() + ": " + std::strerror(errno));
       if (std::chrono::steady_clock::now() > enough) throw at_work(target, content(lock.file));
@@ -102,16 +113,21 @@ OutputLock::OutputLock(const std::filesystem::path& target) : path_(target.strin
       unlink(path_.c_str());
       throw RunError(path_.string() + ": " + std::strerror(error));
     }
+    unfinished_.emplace(path_);
     file_ = lock.release();
     return;
   }
 }
 
 OutputLock::OutputLock(OutputLock&& other) noexcept
-    : path_(std::move(other.path_)), file_(std::exchange(other.file_, -1)) {}
+    : path_(std::move(other.path_)),
+      file_(std::exchange(other.file_, -1)),
+      alone_(other.alone_),
+      unfinished_(std::move(other.unfinished_)) {}
 
 OutputLock::~OutputLock() {
   if (file_ < 0) return;
+  unfinished_.reset();
   if (is_named(file_, path_)) unlink(path_.c_str());  // while it is ours
   close(file_);
 }

@@ -1,7 +1,16 @@
 #pragma once
 #include <filesystem>
+#include <optional>
+
+#include "io/files/unfinished.h"
 
 namespace asdic::detail {
+
+/// Whether an error of flock or fcntl says that the file system has no locks, as some over a
+/// network have none.
+[[nodiscard]] bool says_no_locks(int error) noexcept;
+/// Whether the system refuses locks on a file that is there: who needs one goes on without.
+[[nodiscard]] bool refuses_locks(const std::filesystem::path& path);
 
 /// The right to write a result: one process at a time has it, from before the work until the result
 /// has its name.
@@ -19,9 +28,14 @@ class OutputLock {
   OutputLock(OutputLock&& other) noexcept;
   OutputLock& operator=(OutputLock&&) = delete;
 
+  /// Whether nobody else can have it: false where the file system knows no locks.
+  [[nodiscard]] bool alone() const noexcept { return alone_; }
+
  private:
   std::filesystem::path path_;
   int file_ = -1;
+  bool alone_ = true;
+  std::optional<Unfinished> unfinished_{};
 };
 
 }  // namespace asdic::detail

@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "core/utf8.h"
 #include "io/hdf5/elements.h"
 #include "io/hdf5/remote.h"
 
@@ -104,8 +105,9 @@ namespace {
 constexpr std::size_t most_fixed = 60'000;  // [bytes]
 
 void write_texts(const hdf5::Handle& object, const std::string& key, std::int64_t space,
-                 const std::vector<std::string>& values, const std::filesystem::path& path,
+                 std::vector<std::string> values, const std::filesystem::path& path,
                  const std::string& where) {
+  for (std::string& value : values) value = as_utf8(value);  // as their type says
   std::size_t longest = 1;  // with a zero at the end, see text_type()
   for (const std::string& value : values) longest = std::max(longest, value.size() + 1);
   if (longest * values.size() > most_fixed) {
@@ -256,6 +258,7 @@ std::vector<std::string> Hdf5File::attribute_texts(const std::string& object,
     impl_->check(H5Aread(id, type, buffer.data()), object, "reading the attribute " + key);
     const bool variable = H5Tis_variable_str(type) > 0;
     parts = to_strings(buffer, H5Tget_size(type), variable);
+    for (std::string& part : parts) part = as_utf8(part);  // of others, and of ours of before
     if (variable) H5Dvlen_reclaim(type, space, H5P_DEFAULT, buffer.data());
   } else if (type_class == H5T_INTEGER || type_class == H5T_FLOAT) {
     std::vector<double> numbers(points);

@@ -140,7 +140,7 @@ void check_contents(std::int64_t file, const fs::path& path) {
 void check_contents(const fs::path& path) {
   prepare();
   if (H5Fis_hdf5(path.c_str()) <= 0) return;
-  const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  const Handle file(open_file(path, H5F_ACC_RDONLY), H5Fclose);
   if (file >= 0) check_contents(file, path);
 }
 
@@ -153,7 +153,7 @@ void check_sources(std::int64_t dataset, const fs::path& path) {
     std::error_code error;
     if (!fs::exists(source, error)) continue;
     require_file(source, "a part of a study");
-    const Handle part(H5Fopen(source.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    const Handle part(open_file(source, H5F_ACC_RDONLY), H5Fclose);
     if (part < 0 || filetype(part) != "asdic study")
       throw fault(path, name.string(), "a part that is no study's file", "the study's own");
     check_contents(part, source);

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "io/files/output_lock.h"
 #include "io/hdf5/elements.h"
 #include "io/hdf5/handles.h"
 
@@ -14,6 +15,18 @@ void prepare() {
   // left to itself. Files are closed by Hdf5File, so nothing is left to do at exit.
   [[maybe_unused]] static const herr_t nothing_at_exit = H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+std::int64_t open_file(const std::filesystem::path& path, unsigned flags) {
+  const auto open = [&](std::int64_t access) {
+    return (flags & H5F_ACC_TRUNC) != 0 ? H5Fcreate(path.c_str(), flags, H5P_DEFAULT, access)
+                                        : H5Fopen(path.c_str(), flags, access);
+  };
+  const std::int64_t file = open(H5P_DEFAULT);
+  if (file >= 0 || !refuses_locks(path)) return file;
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_file_locking(access, 0, 1);
+  return open(access);
 }
 
 std::string last_message() {

@@ -44,6 +44,9 @@ class Handle {
 /// terminal, and its hands off at exit.
 void prepare();
 
+/// H5Fcreate (with H5F_ACC_TRUNC) or H5Fopen, without HDF5's locks where the system refuses them.
+[[nodiscard]] std::int64_t open_file(const std::filesystem::path& path, unsigned flags);
+
 }  // namespace asdic::detail::hdf5
 
 namespace asdic::detail {

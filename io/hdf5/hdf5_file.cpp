@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "core/error.h"
+#include "core/utf8.h"
 #include "io/files/files_read.h"
 #include "io/files/input_file.h"
 #include "io/hdf5/elements.h"
@@ -37,7 +38,7 @@ Hdf5File Hdf5File::create(const std::filesystem::path& path) {
   hdf5::prepare();
   auto impl = std::make_unique<Impl>();
   impl->path = path;
-  impl->file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  impl->file = hdf5::open_file(path, H5F_ACC_TRUNC);
   impl->check(impl->file, "", "creating the file");
   return Hdf5File(std::move(impl));
 }
@@ -54,7 +55,7 @@ std::unique_ptr<Hdf5File::Impl> Hdf5File::open_existing(const std::filesystem::p
   impl->path = path;
   if (std::filesystem::file_size(path, error) == 0) throw wrong("an empty file");
   if (H5Fis_hdf5(path.c_str()) == 0) throw wrong("a file that is not HDF5");
-  impl->file = H5Fopen(path.c_str(), change ? H5F_ACC_RDWR : H5F_ACC_RDONLY, H5P_DEFAULT);
+  impl->file = hdf5::open_file(path, change ? H5F_ACC_RDWR : H5F_ACC_RDONLY);
   if (impl->file < 0) throw wrong("a file that cannot be opened (" + hdf5::last_message() + ")");
   hdf5::check_contents(impl->file, path);
   return impl;
@@ -130,7 +131,8 @@ void Hdf5File::write(const std::string& dataset, std::span<const T> values, cons
                dataset, "writing");
 }
 
-void Hdf5File::write_text(const std::string& dataset, std::string_view text) {
+void Hdf5File::write_text(const std::string& dataset, std::string_view given) {
+  std::string text = as_utf8(given);  // as its type says
   const Handle type = hdf5::text_type(text.size() + 1);
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
   const Handle parents = make_parents();
@@ -138,10 +140,8 @@ void Hdf5File::write_text(const std::string& dataset, std::string_view text) {
                                           H5P_DEFAULT, H5P_DEFAULT),
                                dataset, "creating the dataset"),
                   H5Dclose);
-  std::string padded(text);
-  padded.resize(H5Tget_size(type));
-  impl_->check(H5Dwrite(id, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, padded.data()), dataset,
-               "writing");
+  text.resize(H5Tget_size(type));
+  impl_->check(H5Dwrite(id, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()), dataset, "writing");
 }
 
 void Hdf5File::make_dimension(const std::string& dataset, std::size_t size) {

@@ -18,7 +18,7 @@ void Hdf5Output::finish() {
 
 OutputRules rules_for(const std::filesystem::path& path, bool force,
                       const std::filesystem::path& input) {
-  OutputRules rules{.own = own::hdf5, .force = force};
+  OutputRules rules{.own = own::hdf5, .worth = own::pings, .force = force};
   const std::string ending = path.extension().string();
   const std::initializer_list<std::pair<const char*, Recognise>> kinds = {
       {".arr", own::arrivals_file},
@@ -27,7 +27,7 @@ OutputRules rules_for(const std::filesystem::path& path, bool force,
       {".env", own::case_file},
       {".toml", own::scenario}};
   for (const auto& [other, own] : kinds)
-    if (ending == other) rules.own = own;
+    if (ending == other) rules.own = own, rules.worth = nullptr;
   if (!input.empty()) rules.inputs = {input};
   return rules;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/error.h"
 #include "io/hdf5/hdf5_file.h"
 #include "io/hdf5/own_files.h"
 
@@ -122,6 +123,18 @@ bool hdf5(const std::filesystem::path& path) {
            file.attribute_text("", "filetype").starts_with("asdic ");
   } catch (const std::exception&) {
     return false;
+  }
+}
+
+bool pings(const std::filesystem::path& path) {
+  try {
+    const Hdf5File file = Hdf5File::peek(path);
+    return file.attribute_or("", "filetype", "") == "asdic ping" &&
+           file.attribute_number("", "complete") == 0.0 && file.info("ping").shape.front() > 0;
+  } catch (const InputError&) {
+    return false;  // damaged: nothing can be made of it
+  } catch (const RunError&) {
+    return true;  // for all that is known
   }
 }
 

@@ -17,7 +17,7 @@ constexpr double margin = 1.03;              // past the furthest thing of inter
 std::vector<double> fan(const Transmitter& transmitter) {
   const auto* const line = std::get_if<LineBeam>(&transmitter.beam);
   const bool narrow = line != nullptr && line->taper != Taper::omnidirectional;
-  const double half = narrow ? 1.5 * line->beamwidth : radians(20.0);
+  const double half = narrow ? 1.5 * line->steered_width(transmitter.elevation) : radians(20.0);
   const double axis = narrow ? transmitter.elevation : 0.0;
   std::vector<double> elevations;
   elevations.reserve(fan_rays);

@@ -12,7 +12,8 @@ namespace asdic::detail {
 
 PingFileWriter::PingFileWriter(const std::filesystem::path& path, const Scenario& scenario,
                                const Provenance& provenance, SampleTimes times)
-    : PingFileWriter(OutputFile(path, {.own = own::hdf5}), scenario, provenance, times) {}
+    : PingFileWriter(OutputFile(path, {.own = own::hdf5, .worth = own::pings}), scenario,
+                     provenance, times) {}
 
 PingFileWriter::PingFileWriter(OutputFile output, const Scenario& scenario,
                                const Provenance& provenance, SampleTimes times)

@@ -81,12 +81,14 @@ void write_beams(Hdf5File& file, const Scenario& scenario) {
     const auto* const line = std::get_if<LineBeam>(&transmitter.beam);
     const bool narrow = line != nullptr && line->taper != Taper::omnidirectional;
     elevation.push_back(degrees(transmitter.elevation));
-    width.push_back(narrow ? degrees(line->beamwidth) : std::numeric_limits<double>::quiet_NaN());
+    width.push_back(narrow ? degrees(line->steered_width(transmitter.elevation))
+                           : std::numeric_limits<double>::quiet_NaN());
   }
   file.write<double>("transmitters/elevation_deg", elevation, {elevation.size()});
   describe(file, "transmitters/elevation_deg", "of the beam's axis, positive up", "degree");
   file.write<double>("transmitters/beamwidth_deg", width, {width.size()});
-  describe(file, "transmitters/beamwidth_deg", "NaN of no line's beam", "degree");
+  describe(file, "transmitters/beamwidth_deg",
+           "full, at -3 dB, as it is steered; NaN of no line's beam", "degree");
 }
 
 void write_phones(Hdf5File& file, const Scenario& scenario) {

@@ -9,8 +9,7 @@
 namespace asdic::detail::scenario {
 namespace {
 
-constexpr Quantity bottom_depth{
-    .noun = "depth", .unit = "m", .low = 0.0, .high = 12000.0, .above = true};
+constexpr Quantity bottom_depth{.noun = "depth", .unit = "m", .low = 0.01, .high = 12000.0};
 
 enum class Bubbles { none, apl_uw };
 constexpr std::string_view bubbles_words[] = {"none", "apl-uw"};

@@ -29,6 +29,10 @@ void tell_beyond_the_map(const PropagationCase& run, std::vector<std::string>& n
   if (!run.on_area) return;
   double furthest = run.box_range;
   for (const double range : run.receivers.ranges) furthest = std::max(furthest, range);
+  if (furthest > reach_of_area)
+    notes.push_back("environment.area: sound is followed to " + to_text(furthest / 1000.0) +
+                    " km, and planes are taken out of the maps to " +
+                    to_text(reach_of_area / 1000.0) + " km; from there the floor goes on level");
   const double reach = reach_on_map(run, furthest);
   if (reach < furthest)
     notes.push_back("environment.area: sound is followed to " + to_text(furthest / 1000.0) +
@@ -46,8 +50,8 @@ PropagationCase of_ocean_and_run(const TomlValue& document, const std::filesyste
   run.title = root.text("title", "");
   run.source_depths.clear();
   TomlTable table = run_of(root);
-  run.frequency = table.number(
-      "frequency", {.noun = "frequency", .unit = "Hz", .low = 0.0, .high = 1e8, .above = true});
+  run.frequency =
+      table.number("frequency", {.noun = "frequency", .unit = "Hz", .low = 1e-3, .high = 1e8});
   TomlTable environment = root.table("environment");
   static_cast<void>(environment.has("wind_speed"));  // of a sonar
   run.origin = scenario::read_origin(environment);
@@ -61,7 +65,8 @@ PropagationCase of_ocean_and_run(const TomlValue& document, const std::filesyste
     run.on_area = {.area = area->build(run.environment),
                    .place = Vec2(transect.x, transect.y),
                    .bearing = transect.bearing};
-    run.environment = along_transect(*run.on_area->area, transect);
+    run.environment =
+        run.on_area->area->section(run.on_area->place, run.on_area->bearing, reach_of_area);
   }
   if (area || along || varies_with_range(run.environment)) run.on_map = transect;
   environment.finish();

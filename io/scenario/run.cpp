@@ -15,8 +15,7 @@ constexpr AngleQuantity launch_elevation{.noun = "elevation", .low_deg = -360.0,
 constexpr Quantity receiver_depth{.noun = "depth", .unit = "m", .low = -1e6, .high = 1e6};
 constexpr Quantity receiver_range{.noun = "range", .unit = "m", .low = -1e10, .high = 1e10};
 constexpr Quantity limit{.noun = "limit", .unit = "m", .low = 0.0, .high = 1e10};
-constexpr Quantity case_frequency{
-    .noun = "frequency", .unit = "Hz", .low = 0.0, .high = 1e8, .above = true};
+constexpr Quantity case_frequency{.noun = "frequency", .unit = "Hz", .low = 1e-3, .high = 1e8};
 constexpr std::int64_t most_beams = 10'000'000;
 
 /// Where a list first falls, or does not rise. \return its element: "range[3]"; "" if nowhere

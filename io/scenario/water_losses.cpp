@@ -60,7 +60,7 @@ struct BiologyTable {
       field.fault("bottom", "a depth below the layer's top, " + to_text(layer.top) + " m");
     field(required("resonance"), layer.resonance, quantity::frequency, "of the swim bladders");
     field(required("quality_factor"), layer.quality,
-          {.noun = "quality factor", .low = 0.0, .high = 1e4, .above = true}, "of the resonance");
+          {.noun = "quality factor", .low = 0.1, .high = 1e4}, "of the resonance");
     field(required("strength_db_per_km"), layer.strength,
           {.noun = "strength", .unit = "dB/km", .low = 0.0, .high = 1e6}, "that is absorbed");
   }

@@ -4,6 +4,9 @@
 
 namespace asdic::detail {
 
+/// The most values of { first, last, count }.
+inline constexpr int most_on_an_axis = 10'000'000;
+
 /// `count` values from first to last, both included: what { first, last, count } stands for.
 [[nodiscard]] std::vector<double> evenly_spaced(double first, double last, std::size_t count);
 

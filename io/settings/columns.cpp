@@ -73,7 +73,8 @@ Columns read_columns(TomlTable& table, const std::filesystem::path& folder,
 namespace {
 
 /// \param allowed  of a value and the one before it   \param side  "below", "not above"
-void require_rows_in_order(const Columns& columns, bool (*allowed)(double, double),
+template <class Allowed>
+void require_rows_in_order(const Columns& columns, const Allowed& allowed,
                            const std::string& side) {
   const Quantity& first = columns.quantities[0];
   for (std::size_t row = 1; row < columns.rows(); ++row)
@@ -86,17 +87,24 @@ void require_rows_in_order(const Columns& columns, bool (*allowed)(double, doubl
 
 bool is_depth(const Columns& columns) { return columns.quantities[0].noun == "depth"; }
 
+/// How far rows lie apart at least: of places a micrometre, within which nothing is known of a sea.
+double least_step(const Columns& columns) { return columns.quantities[0].unit == "m" ? 1e-6 : 0.0; }
+
 }  // namespace
 
 void require_increasing(const Columns& columns) {
+  const double least = least_step(columns);
   require_rows_in_order(
-      columns, [](double value, double before) { return !(value <= before); },
+      columns,
+      [least](double value, double before) { return value > before && value - before >= least; },
       is_depth(columns) ? "below" : "above");
 }
 
 void require_not_falling(const Columns& columns) {
+  const double least = least_step(columns);
   require_rows_in_order(
-      columns, [](double value, double before) { return !(value < before); },
+      columns,
+      [least](double value, double before) { return value == before || value - before >= least; },
       is_depth(columns) ? "not above" : "not below");
 }
 

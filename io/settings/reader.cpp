@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "core/quantities.h"
 #include "core/text.h"
 #include "core/unit_text.h"
 #include "io/settings/axis.h"
@@ -196,7 +197,7 @@ void TomlReader::axis(SettingKey key, std::vector<double>& values, const Quantit
   } else {
     TomlTable even = table_->table(name);
     const double first = even.number("first", q), last = even.number("last", q);
-    const auto count = even.integer("count", 1, 10'000'000);
+    const auto count = even.integer("count", 1, most_on_an_axis);
     even.finish();
     values = evenly_spaced(first, last, static_cast<std::size_t>(count));
   }
@@ -282,10 +283,8 @@ void TomlReader::columns(std::initializer_list<Column> all, const ColumnRules& r
 void TomlReader::sound(SettingKey key, const Sound& sound, std::string_view what) {
   const std::string name(key.name);
   if (table_->has_quietly("samples")) {  // of a sound that was made and not recorded
-    *sound.samples = table_->numbers("samples", {.noun = "pressure", .low = -1e300, .high = 1e300});
-    *sound.sample_rate = table_->number(
-        "sample_rate",
-        {.noun = "sample rate", .unit = "Hz", .low = 0.0, .high = 1e9, .above = true});
+    *sound.samples = table_->numbers("samples", quantity::sound_sample);
+    *sound.sample_rate = table_->number("sample_rate", quantity::sound_rate);
     note_values("samples", "samples", *sound.samples, {});
     note_values("sample_rate", "sample_rate", {sound.sample_rate, 1}, {.unit = "Hz"});
     sound.file->clear();

@@ -27,7 +27,7 @@ class Setting:
     kind       "number", "whole", "flag", "text", "word", "numbers", "rows", "axis", "vector",
                "vectors", "name"
     unit       "m"; "" of none
-    lowest, highest, above_lowest   its range; above_lowest: the lowest itself is outside
+    lowest, highest, or_zero   its range; or_zero: or 0, where the lowest is above it
     words      that there are, of a number those in its place
     standard   what holds without it, as TOML; "" of none
     otherwise  the same in words, or the setting that is its default
@@ -39,7 +39,7 @@ class Setting:
     unit: str
     lowest: float
     highest: float
-    above_lowest: bool
+    or_zero: bool
     words: tuple
     length: int
     standard: str
@@ -54,7 +54,7 @@ class Setting:
         if self.words and self.kind == "word":
             return "one of " + ", ".join(f'"{word}"' for word in self.words)
         inf = float("inf")
-        low = f"{'above' if self.above_lowest else 'from'} {self.lowest:g}"
+        low = f"{'0, or ' if self.or_zero else ''}from {self.lowest:g}"
         text = ""
         if self.lowest > -inf:
             text = low + (f" to {self.highest:g}" if self.highest < inf else "")
@@ -160,7 +160,7 @@ def check(key: str, choices: list, value) -> None:
         ranged = [one for one in choices if one.kind in ("number", "whole")]
         asked = float(value)
         fits = [one for one in ranged if one.lowest <= asked <= one.highest
-                and not (one.above_lowest and asked == one.lowest)]
+                or one.or_zero and asked == 0]
         if ranged and not fits:
             unit = f" {ranged[0].unit}" if ranged[0].unit else ""
             raise made(key, f"{asked:g}{unit}", ranged[0].range)

@@ -46,8 +46,8 @@ class Listening:
 
     def wanted(self):
         s = self.settings
-        return s.pace != "fast" and \
-            (s.delivery == "listen" or s.delivery == "auto" and not s.receiver)
+        able = s.scenario or not s.receiver  # a receiver needs a twin of the server
+        return s.pace != "fast" and (s.delivery == "listen" or s.delivery == "auto" and bool(able))
 
     def told(self, at, change):
         """What the server has taken of the world."""

@@ -24,7 +24,8 @@ class Settings:
     platform: str = ""            # the first, where there are several
     array: str = ""
     array_follows_heading: bool = False
-    delivery: str = "auto"        # "pings": the record of each; "listen": a stream; "none"
+    # "pings": the record of each; "listen": a stream; "none"; "auto": a stream where there can be one
+    delivery: str = "auto"
     receiver: bool = True
     receiver_options: list = field(default_factory=list)
     most_detections: int = 50

@@ -94,11 +94,19 @@ def is_ours(path: Path) -> bool:
 
 
 def place(file, wanted=None) -> Path:
-    """Where the page goes: `wanted`, into it if it is a folder, or beside the file."""
+    """Where the page goes: beside the file; to `wanted`, a name that ends in .html; or into it, a folder, which is
+    made. \\throws InputError, OSError
+    """
     name = Path(file).with_suffix(".html") if Path(file).suffix else Path(f"{file}.html")
     if not wanted:
         return name
-    return Path(wanted) / name.name if os.path.isdir(wanted) else Path(wanted)
+    wanted = Path(wanted)
+    if wanted.suffix.lower() in (".html", ".htm") and not wanted.is_dir():
+        return wanted
+    if wanted.exists() and not wanted.is_dir():
+        raise InputError(wanted, "a file", "a folder for the page, or its name, which ends in .html")
+    wanted.mkdir(parents=True, exist_ok=True)
+    return wanted / name.name
 
 
 def save(made: str, path: Path) -> None:

@@ -43,7 +43,7 @@ def arguments(argv):
                         help="differences of fields where both losses are below this")
     parser.add_argument("--program", metavar="VERSION", default="", help="of the program that asks")
     parser.add_argument("--html", action="store_true",
-                        help="one page for a browser in place of pictures; -o names it")
+                        help="one page for a browser in place of pictures; -o names it, NAME.html, or its folder")
     parser.add_argument("--force", action="store_true",
                         help="write over files even if asdic did not write them")
     return parser.parse_args(argv)

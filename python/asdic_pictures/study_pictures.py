@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from . import style
-from .study_data import Column, Study, SummaryTable, spoken
+from .study_data import Study, SummaryTable, spoken
 
 MOST_PANELS = 12
 MOST_BESIDE = 6  # inputs of two maps side by side
@@ -69,22 +69,21 @@ def banded(table: SummaryTable) -> list:
 def band(axes, table: SummaryTable, x: str, y: str, colour: str, label: str | None = None) -> None:
     """An estimate with its interval: a line and a band, or, of categories, dots and bars."""
     at, value = table[x], table[y]
-    low, high = table[f"{y}_low"].values, table[f"{y}_high"].values
+    middle, low, high = (table[y + end].values * value.scale() for end in ("", "_low", "_high"))
     if y == "k_shape":  # without end: Rayleigh
-        value = Column(y, value.unit, value.meaning, np.minimum(value.values, RAYLEIGH))
-        high = np.minimum(high, RAYLEIGH)
+        middle, high = np.minimum(middle, RAYLEIGH), np.minimum(high, RAYLEIGH)
     if y == RARE:  # none found: the band alone
-        value = Column(y, value.unit, value.meaning, np.where(value.values > 0.0, value.values, np.nan))
+        middle = np.where(middle > 0.0, middle, np.nan)
     if at.labels:
         place = np.arange(at.values.size)
-        axes.errorbar(place, value.values, [value.values - low, high - value.values], fmt="o",
+        axes.errorbar(place, middle, [middle - low, high - middle], fmt="o",
                       color=colour, capsize=3, label=label)
         names = [at.labels[int(k)] if 0 <= k < len(at.labels) else f"{k:g}" for k in at.values]
         axes.set_xticks(place, [style.shorten(n, 18) for n in names])
     else:
         place = at.values * at.scale()
         axes.fill_between(place, low, high, color=colour, alpha=0.2, lw=0)
-        axes.plot(place, value.values, "-o", ms=3.5, color=colour, label=label)
+        axes.plot(place, middle, "-o", ms=3.5, color=colour, label=label)
         if f"{x}_low" in table:  # of bins: the whole of them, not the middles alone
             edges = np.concatenate([table[f"{x}_low"].values, table[f"{x}_high"].values])
             axes.set_xlim(edges.min() * at.scale(), edges.max() * at.scale())
@@ -239,7 +238,7 @@ def draw_map(study: Study) -> dict:
         heading(axes[0], study, f"each within {widest:.2g} or less ({study.interval})"
                 if len(names) == 1 else "")
         for name, a in zip(names, axes):
-            value = table[name].values.reshape(cells)
+            value = table[name].values.reshape(cells) * table[name].scale()
             probability = not table.name.startswith(IN_UNITS)
             limit = top(table[f"{name}_high"].values) if probability else None
             image = a.pcolormesh(across, down, value.T, cmap=style.MAP,
@@ -623,7 +622,7 @@ def draw_convergence(study: Study) -> dict:
     name = banded(table)[0]
     fig, axes = style.figure("How the estimate settles")
     band(axes, table, "count", name, style.BLUE)
-    axes.axhline(table[name].values[-1], color=style.GREY, lw=0.8, ls="--", label="all of them")
+    axes.axhline(table[name].values[-1] * table[name].scale(), color=style.GREY, lw=0.8, ls="--", label="all of them")
     axes.set_xscale("log")
     axes.set_xlabel("realisations")
     axes.set_ylabel(table[name].label())

@@ -128,7 +128,8 @@ def how_full(cells: Cells) -> str:
 
 def draw_one(study: Study, table: SummaryTable, name: str):
     cells = Cells(table)
-    value = cells.of(table, name)
+    scale = table[name].scale()
+    value = scale * cells.of(table, name)
     probability = not table.name.endswith("means")
     known = value[np.isfinite(value)]
     limits = ((0.0, min(1.0, top(table[f"{name}_high"].values[table["count"].values > 0])))
@@ -137,7 +138,7 @@ def draw_one(study: Study, table: SummaryTable, name: str):
     fig, axes = panels(study, f"{words[:1].upper()}{words[1:]} over place", cells.layers,
                        7.9 if cells.layers == 1 else 4.9 - 0.5 * columns_of(cells.layers))
     full = cells.count >= THIN
-    half = 0.5 * (cells.of(table, f"{name}_high") - cells.of(table, f"{name}_low"))[full]
+    half = 0.5 * scale * (cells.of(table, f"{name}_high") - cells.of(table, f"{name}_low"))[full]
     half = half[np.isfinite(half)]
     within = f" · all others within ± {half.max():.2g} or less ({study.interval})" if half.size else ""
     for layer, a in enumerate(axes):

@@ -9,7 +9,7 @@ py::dict described(const Setting& s) {
                                       "rows",   "axis",  "vector", "vectors", "name"};
   using namespace py::literals;
   return py::dict("path"_a = s.path, "kind"_a = kinds[static_cast<int>(s.kind)], "unit"_a = s.unit,
-                  "lowest"_a = s.lowest, "highest"_a = s.highest, "above_lowest"_a = s.above_lowest,
+                  "lowest"_a = s.lowest, "highest"_a = s.highest, "or_zero"_a = s.or_zero,
                   "words"_a = s.words, "length"_a = s.length, "standard"_a = s.standard,
                   "otherwise"_a = s.otherwise, "help"_a = s.help, "condition"_a = s.condition,
                   "required"_a = s.required);

@@ -15,15 +15,25 @@ constexpr double straight_error = 0.04;  // of speeds between the levels of sect
 constexpr int land = -1;                 // as a kind of sea floor
 constexpr int unmapped = -2;             // the one kind of a sea floor without a map of kinds
 
-/// How far a map goes on from a place along a bearing, to `most` m [m].
+/// How far a map goes on from a place along a bearing, to `most` m, its edge to a millimetre [m].
+/// \param step  by which it is looked for [m]
 template <class Map>
-double reach_on(const Map& map, const Vec2& place, double bearing, double most) {
-  const double step = map.spacing(place.x(), place.y());
-  double r = 0.0;
-  while (r < most && map.covers(place.x() + (r + step) * std::sin(bearing),
-                                place.y() + (r + step) * std::cos(bearing)))
-    r += step;
-  return std::min(r, most);
+double reach_on(const Map& map, const Vec2& place, double bearing, double step, double most) {
+  const auto covers = [&](double r) {
+    return map.covers(place.x() + r * std::sin(bearing), place.y() + r * std::cos(bearing));
+  };
+  double on = 0.0, off = 0.0;
+  while (on < most) {
+    off = std::min(on + step, most);
+    if (!covers(off)) break;
+    on = off;
+  }
+  constexpr double exact = 1e-3;
+  while (off - on > exact) {
+    const double middle = 0.5 * (on + off);
+    (covers(middle) ? on : off) = middle;
+  }
+  return on;
 }
 
 /// Reflects nothing.
@@ -270,13 +280,18 @@ Boundary Area::floor_along(const Vec2& place, double bearing, double reach) cons
 void Area::put_water(const Vec2& place, double bearing, double reach, Environment& plane) const {
   if (!maps_.water) return;
   const WaterMap& water = *maps_.water;
+  // To the edge of the water's own map, and where it goes on a step further than is asked for.
   const double step = water.spacing(place.x(), place.y());
-  const auto steps = static_cast<std::size_t>(std::ceil(reach / step)) + 1;
+  const double end = reach_on(water, place, bearing, spacing(place), reach + step);
+  std::vector<double> at = {0.0};
+  while (at.back() < std::min(end, reach)) at.push_back(std::min(at.back() + step, end));
+  if (at.size() == 1) at.push_back(step);
+  const std::size_t steps = at.size() - 1;
   // Over land, where the map may have no water, the columns before go on.
   std::vector<Vec2> places;
-  for (std::size_t i = 0; i <= steps; ++i) {
-    const Vec2 there = place + double(i) * step * Vec2(std::sin(bearing), std::cos(bearing));
-    places.push_back(i > 0 && is_land(there.x(), there.y()) ? places.back() : there);
+  for (const double r : at) {
+    const Vec2 there = place + r * Vec2(std::sin(bearing), std::cos(bearing));
+    places.push_back(r > 0.0 && is_land(there.x(), there.y()) ? places.back() : there);
   }
   const std::vector<double> levels =
       water.straight_levels(places, everywhere_.surface.depth, straight_error);
@@ -288,7 +303,7 @@ void Area::put_water(const Vec2& place, double bearing, double reach, Environmen
   constexpr double error = 0.25 * straight_error;
   const auto straight = [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first + 1; i < last; ++i) {
-      const double share = double(i - first) / double(last - first);
+      const double share = (at[i] - at[first]) / (at[last] - at[first]);
       for (std::size_t k = 0; k < n; ++k)
         if (std::abs(std::lerp(columns[first][k], columns[last][k], share) - columns[i][k]) > error)
           return false;
@@ -296,7 +311,7 @@ void Area::put_water(const Vec2& place, double bearing, double reach, Environmen
     return true;
   };
   const auto add = [&](std::size_t i) {
-    ranges.push_back(double(i) * step);
+    ranges.push_back(at[i]);
     speeds.insert(speeds.end(), columns[i].begin(), columns[i].end());
   };
   add(0);
@@ -340,7 +355,8 @@ Area Area::scattering(ScatteredElsewhere surface, ScatteredElsewhere bottom) con
 
 Environment Area::section(const Vec2& place, double bearing, double reach) const {
   Environment plane = everywhere_;
-  reach = std::max(reach_on_map(place, bearing, reach), 10.0 * spacing(place));
+  const double step = spacing(place);
+  reach = std::max(reach_on(maps_.floor, place, bearing, step, reach), 10.0 * step);
   plane.bottom = floor_along(place, bearing, reach);
   put_water(place, bearing, reach, plane);
   put_waves(place, bearing, reach, plane);
@@ -348,16 +364,17 @@ Environment Area::section(const Vec2& place, double bearing, double reach) const
 }
 
 double Area::reach_on_map(const Vec2& place, double bearing, double most) const {
-  const double reach = reach_on(maps_.floor, place, bearing, most);
-  return maps_.water ? reach_on(*maps_.water, place, bearing, reach) : reach;
+  const double step = spacing(place), reach = reach_on(maps_.floor, place, bearing, step, most);
+  return maps_.water ? reach_on(*maps_.water, place, bearing, step, reach) : reach;
 }
 
 Area::Edge Area::nearest_edge(const Vec2& place, double most) const {
   Edge found{.distance = most};
+  const double step = spacing(place);
   for (int degree = 0; degree < 360; degree += 5) {
     const double bearing = radians(degree);
     const auto look = [&](const auto& map) {
-      const double reach = reach_on(map, place, bearing, found.distance);
+      const double reach = reach_on(map, place, bearing, step, found.distance);
       if (reach < found.distance) found = {reach, bearing, map.name()};
     };
     look(maps_.floor);

@@ -88,18 +88,24 @@ BranchTable::BranchTable(Column column, const PathLimits& limits, const Environm
   if (kept.fan != nullptr) parts.emplace(column_, *kept.fan, kept.layers);
   if (kept.series != nullptr) legs_.emplace(column_, *kept.series, kept.layers);
   const auto critical = critical_speeds(column_.layers(), slowest, fastest);
+  std::vector<double> singular = {column_.source_speed(), column_.receiver_speed()};
+  for (const CriticalSpeed& c : critical_speeds(column_.layers(), 0.0, fastest))
+    singular.push_back(c.speed);
   intervals_.reserve(critical.size());
   for (std::size_t i = 0; i + 1 < critical.size(); ++i)
-    add_interval(critical[i], critical[i + 1], parts ? &*parts : nullptr);
+    add_interval(critical[i], critical[i + 1], bend_within(critical[i].speed, singular),
+                 parts ? &*parts : nullptr);
 }
 
-void BranchTable::add_interval(const CriticalSpeed& slow, const CriticalSpeed& fast,
+void BranchTable::add_interval(const CriticalSpeed& slow, const CriticalSpeed& fast, double bend,
                                const Parts* parts) {
   const bool analytic = column_.layers().front().law == Layer::Law::munk,
              by_series = analytic && legs_;
   const OceanFan::Interval* known = parts != nullptr ? parts->find(slow, fast) : nullptr;
+  if (known != nullptr && known->nodes > 1 && bend < known->sigma[1])
+    known = nullptr;  // too few nodes
   std::vector<double> own;
-  if (known == nullptr) put_nodes(slow, fast, analytic, own);
+  if (known == nullptr) put_nodes(slow, fast, analytic, own, bend);
   const std::span<const double> nodes =
       known != nullptr ? std::span(known->sigma).first(known->nodes) : own;
   FanInterval interval{.reference_speed = slow.speed};

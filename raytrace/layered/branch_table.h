@@ -100,7 +100,8 @@ class BranchTable {
   void for_each_piece(double low, double high, std::span<const double> ranges,
                       const std::function<void(const MonotonePiece&)>& visit) const;
   class Parts;
-  void add_interval(const CriticalSpeed& slow, const CriticalSpeed& fast, const Parts* parts);
+  void add_interval(const CriticalSpeed& slow, const CriticalSpeed& fast, double bend,
+                    const Parts* parts);
   void limit_by_loss(FanInterval& interval) const;
 
   Column column_;

@@ -54,7 +54,7 @@ std::vector<CriticalSpeed> critical_speeds(std::span<const Layer> layers, double
 }
 
 void put_nodes(const CriticalSpeed& slow, const CriticalSpeed& fast, bool analytic,
-               std::vector<double>& sigma) {
+               std::vector<double>& sigma, double bend) {
   sigma.clear();
   if (are_one(slow.speed, fast.speed)) return;
   // The last node is 1e-12 short of it: the speeds' ratio would not tell it so well.
@@ -65,11 +65,22 @@ void put_nodes(const CriticalSpeed& slow, const CriticalSpeed& fast, bool analyt
   sigma.push_back(1e-10 * sigma_end);
   if (slow.logarithmic)
     for (int m = 14; m >= 1; --m) sigma.push_back(std::ldexp(first, -2 * m));
+  if (!slow.logarithmic && bend < first) {
+    const int halvings = std::ilogb(first / bend) + 3;
+    for (int m = halvings; m >= 1; --m) sigma.push_back(std::ldexp(first, -m));
+  }
   for (int j = 1; j < count; ++j) sigma.push_back(sigma_end * (j * j) / (double(count) * count));
   if (fast.logarithmic)
     for (int m = 1; m <= 14; ++m)
       sigma.push_back(sigma_end * (1.0 - std::ldexp(2.0 / count, -2 * m)));
   sigma.push_back(sigma_end * (1.0 - 1e-12));
+}
+
+double bend_within(double speed, std::span<const double> others) {
+  double next = 0.0;
+  for (const double other : others)
+    if (other < speed && !are_one(other, speed)) next = std::max(next, other);
+  return next > 0.0 ? std::sqrt((speed - next) * (speed + next)) / next : infinity;
 }
 
 }  // namespace asdic::detail

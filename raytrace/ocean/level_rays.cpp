@@ -8,13 +8,15 @@ namespace {
 
 LevelRays level_within(double share_of_wavelength, const Environment& environment, double frequency,
                        double range, double depth) noexcept {
-  constexpr double beside = 1e-3;  // of the kink [m]: where c is smooth its slope there is nothing
-  const auto c = [&](double z) { return sound_speed(environment, range, z).c; };
-  const double here = c(depth);
-  const double above = (c(depth - beside) - here) / beside;
-  const double below = (c(depth + beside) - here) / beside;
-  const double g = std::min(above, below);
-  constexpr double least_gradient = 1e-6;  // [1/s] what a smooth minimum has 1 mm from it
+  constexpr double beside = 1e-3;  // [m]
+  const double here = sound_speed(environment, range, depth).c;
+  // Away from the depth, as it is at the depth itself: at a smooth minimum it is nothing there.
+  const auto rise = [&](double off) {
+    const SoundSpeed2D there = sound_speed(environment, range, depth + off);
+    return std::copysign(1.0, off) * (there.c_z - off * there.c_zz);
+  };
+  const double g = std::min(rise(-beside), rise(beside));
+  constexpr double least_gradient = 1e-6;  // [1/s]
   if (!(g > least_gradient)) return {};
   const double height = share_of_wavelength * here / frequency;
   return {.angle = std::sqrt(2.0 * g * height / here), .height = height};  // h = cα²/(2g)

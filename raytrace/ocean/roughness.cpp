@@ -37,17 +37,20 @@ constexpr double finest_step = 0.02;
 /// Exponent of the spectrum's cut-off beyond which nothing is left.
 constexpr double gone = 40.0;
 
-/// 4 sin θ ∫ ½α x⁻² e^{−β/(x κ)²} A(x) d(ln x), κ = kU²/g, A = mean_vertical.
+/// ln of 4 sin θ ∫ ½α x⁻² e^{−β/(x κ)²} A(x) d(ln x), κ = kU²/g, A = mean_vertical: of a sea too
+/// short to scatter into the water, e⁻⁴⁶⁰ for instance, a number like any other.
 template <class Vertical>
-double first_order(double sine, double scaled, double last, const Vertical& vertical, int steps) {
+double log_first_order(double sine, double scaled, double last, const Vertical& vertical,
+                       int steps) {
+  const auto cut = [&](double x) { return pm_beta / (x * x * scaled * scaled); };
+  const double least = cut(last);
   double sum = 0.0;
   for (int i = 0; i < steps; ++i) {
-    const double x = last * std::exp(-(i + 0.5) * finest_step);
-    const double cut = pm_beta / (x * x * scaled * scaled);
-    if (cut > gone) break;
-    sum += 0.5 * pm_alpha / (x * x) * std::exp(-cut) * vertical(i);
+    const double x = last * std::exp(-(i + 0.5) * finest_step), beyond = cut(x) - least;
+    if (beyond > gone) break;
+    sum += 0.5 * pm_alpha / (x * x) * std::exp(-beyond) * vertical(i);
   }
-  return 4.0 * sine * sum * finest_step;
+  return std::log(4.0 * sine * sum * finest_step) - least;
 }
 
 double eckart(double sine, double scaled) {  // G² = 4 sin²θ·h²k², h² = αU⁴/(4βg²)
@@ -66,10 +69,10 @@ class FirstOrderTable {
         vertical[std::size_t(i)] = mean_vertical(last * std::exp(-(i + 0.5) * finest_step), sine);
       for (int w = 0; w < waves; ++w) {
         const double scaled = std::exp(log_scaled(w));
-        const double p = first_order(
-            sine, scaled, last, [&](int i) { return vertical[std::size_t(i)]; }, most_steps);
         value_[std::size_t(a)][std::size_t(w)] =
-            std::log(std::max(p, 1e-300) / eckart(sine, scaled));
+            log_first_order(
+                sine, scaled, last, [&](int i) { return vertical[std::size_t(i)]; }, most_steps) -
+            std::log(eckart(sine, scaled));
       }
     }
   }
@@ -147,7 +150,7 @@ double first_order_exponent(double sine, double scaled_wavenumber, Sea sea, doub
     const double a = (sine - x) * (sine + x), b = 2.0 * x * cosine;
     return 0.5 * (std::sqrt(std::max(a - b, 0.0)) + std::sqrt(std::max(a + b, 0.0)));
   };
-  return first_order(sine, scaled_wavenumber, last, vertical, 100'000);
+  return std::exp(log_first_order(sine, scaled_wavenumber, last, vertical, 100'000));
 }
 
 double scattering_exponent(const Roughness& roughness, double sine, double wavenumber) noexcept {

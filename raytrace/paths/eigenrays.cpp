@@ -19,9 +19,19 @@
 namespace asdic::detail {
 namespace {
 
-/// Of a source and a receiver at one depth; the sums take them apart, no answer changes by more
-/// than rounding [m].
+/// A source and a receiver closer than this in depth: the sums take them so far apart, no answer
+/// changes by more than rounding [m].
 constexpr double depth_offset = 1e-6;
+
+/// The receiver's depth that the sums take.
+double summed_depth(double source_depth, double receiver_depth, const Environment& ocean) {
+  const double off = receiver_depth - source_depth;
+  if (std::abs(off) >= depth_offset) return receiver_depth;
+  const bool below =
+      source_depth +
+      depth_offset<ocean.bottom.depth, above = source_depth - depth_offset> ocean.surface.depth;
+  return source_depth + (below && (off >= 0.0 || !above) ? depth_offset : -depth_offset);
+}
 
 /// A receiver (almost) straight above or below is met by (almost) vertical rays, whose ξ is
 /// proportional to the range; they are found at this range and then put upright. The delay of a
@@ -181,23 +191,16 @@ std::vector<Arrivals> EigenraySolver::find(double source_depth,
 
 BranchTable EigenraySolver::table(double source_depth, double receiver_depth,
                                   const PathLimits& limits) const {
-  if (source_depth == receiver_depth) {
-    const bool room_below = receiver_depth + depth_offset < environment_.bottom.depth;
-    receiver_depth += room_below ? depth_offset : -depth_offset;
-  }
-  return {Column(water_->layers, source_depth, receiver_depth), limits, &environment_,
-          water_->kept()};
+  const double there = summed_depth(source_depth, receiver_depth, environment_);
+  return {Column(water_->layers, source_depth, there), limits, &environment_, water_->kept()};
 }
 
 std::optional<Arrival> EigenraySolver::follow(const Arrival& known, double source_depth,
                                               double receiver_depth, double range, double frequency,
                                               const PathLimits& limits) const {
-  const bool horizontal = known.launch_elevation == 0.0;  // a ray that stays at its depth
-  if (!layered_ || horizontal || !(range >= least_range)) return std::nullopt;
-  if (source_depth == receiver_depth) {  // as in table()
-    const bool room_below = receiver_depth + depth_offset < environment_.bottom.depth;
-    receiver_depth += room_below ? depth_offset : -depth_offset;
-  }
+  const bool flat = is_flat(known, environment_.water.at(source_depth));
+  if (!layered_ || flat || !(range >= least_range)) return std::nullopt;
+  receiver_depth = summed_depth(source_depth, receiver_depth, environment_);
   const auto water = columns_->between(source_depth, receiver_depth, water_->kept());
   return followed_branch(environment_, *water, range, frequency, known, limits);
 }

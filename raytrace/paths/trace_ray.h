@@ -6,8 +6,7 @@
 namespace asdic::detail {
 
 /// What a fan of rays may be asked for: half way round the Earth, and no more than can be read.
-inline constexpr Quantity traced_range{
-    .noun = "range", .unit = "m", .low = 0.0, .high = 2e7, .above = true};
+inline constexpr Quantity traced_range{.noun = "range", .unit = "m", .low = 1e-3, .high = 2e7};
 inline constexpr int most_traced_rays = 100'000, most_traced_bounces = 100'000;
 
 /// Traces one ray out to a range, with points at most `depth_step` apart in depth. It ends early

@@ -8,11 +8,13 @@
 
 #include "core/geometry.h"
 #include "raytrace/ocean/slice.h"
+#include "raytrace/paths/energy_bound.h"
 #include "raytrace/places/followed_path.h"
 #include "raytrace/volume/volume_eigenrays.h"
 #include "raytrace/waves/caustics.h"
 #include "raytrace/waves/cycles.h"
 #include "raytrace/waves/diffraction.h"
+#include "raytrace/waves/put_roughness.h"
 
 namespace asdic::detail {
 namespace {
@@ -164,11 +166,22 @@ double PropagationPaths::speed_at(const Vec3& place) const {
 }
 
 std::shared_ptr<const EigenraySolver> PropagationPaths::solver(const Plane& plane) const {
-  if (layered_) return {std::shared_ptr<void>(), &along_};  // not owned
+  if (layered_) return layered_solver();
   ExactKey own = key(Kept::slice);
   add_to(own, plane, area_ != nullptr);
   return memory_->remember(
       own, [&] { return std::make_shared<EigenraySolver>(environment_of(plane)); },
+      [](const EigenraySolver& made) { return bytes_of_slice(made.environment()); });
+}
+
+std::shared_ptr<const EigenraySolver> PropagationPaths::layered_solver() const {
+  return {std::shared_ptr<void>(), &along_};  // not owned
+}
+
+std::shared_ptr<const EigenraySolver> PropagationPaths::between_mirrors() const {
+  return memory_->remember(
+      key(Kept::slice),
+      [&] { return std::make_shared<EigenraySolver>(without_roughness(along_.environment())); },
       [](const EigenraySolver& made) { return bytes_of_slice(made.environment()); });
 }
 
@@ -188,22 +201,40 @@ Arrivals PropagationPaths::search(const Vec3& from, const Vec3& to, double frequ
     VolumeSearchReport report;
     Arrivals found = volume_eigenrays(VolumeTracer(*ocean, frequency), from, to, limits, &report);
     if (report.given_up > 0) memory_->count_ended_search();
-    return found;
+    return bounded(std::move(found), from, to, frequency, limits);
   }
-  return search_plane(from, to, frequency, limits);
+  return bounded(search_plane(from, to, frequency, limits), from, to, frequency, limits);
+}
+
+Arrivals PropagationPaths::bounded(Arrivals found, const Vec3& from, const Vec3& to,
+                                   double frequency, const PathLimits& limits) const {
+  // Rays alone have no bound at a caustic: nobody receives those where waves mend them.
+  if (layered_ && !limits.diffraction) return found;
+  ensure_bounded(found, along_.environment(),
+                 {.source_depth = from.z(),
+                  .receiver_depth = to.z(),
+                  .range = separation(from, to).range,
+                  .frequency = frequency,
+                  .layered = layered_,
+                  .in_volume = volume() != nullptr});
+  return found;
 }
 
 Arrivals PropagationPaths::search_plane(const Vec3& from, const Vec3& to, double frequency,
                                         const PathLimits& limits) const {
   const double range = separation(from, to).range;
   if (layered_) {
-    Arrivals found = along_.find(from.z(), to.z(), range, frequency, limits);
+    const bool rough = limits.diffraction && is_rough(along_.environment());
+    const std::shared_ptr<const EigenraySolver> solver =
+        rough ? between_mirrors() : layered_solver();
+    Arrivals found = solver->find(from.z(), to.z(), range, frequency, limits);
     if (limits.diffraction) {
-      put_caustics(along_, from.z(), to.z(), range, frequency, limits, found);
-      put_waves(along_, from.z(), to.z(), range, frequency, limits, found,
+      put_caustics(*solver, from.z(), to.z(), range, frequency, limits, found);
+      put_waves(*solver, from.z(), to.z(), range, frequency, limits, found,
                 [&](const CycleNeed& need, const CyclesMaker& make) {
                   return memory_->remember(key(Kept::cycle_waves, need), make);
                 });
+      if (rough) put_roughness(along_.environment(), frequency, limits.faintest, found);
       const OceanMemory kept{*memory_, identity_};
       auto more = diffracted_arrival(along_.environment(), from.z(), to.z(), range, frequency,
                                      found, &kept);
@@ -295,7 +326,7 @@ Arrivals PropagationPaths::followed(std::span<const Arrival> known, const Vec3& 
       found.push_back(std::move(*same));
   }
   sort_by_delay(found);
-  return found;
+  return bounded(std::move(found), from, to, frequency, limits);
 }
 
 }  // namespace asdic::detail

@@ -102,6 +102,12 @@ class PropagationPaths {
                                       const PathLimits& limits) const;
   [[nodiscard]] Arrivals search(const Vec3& from, const Vec3& to, double frequency,
                                 const PathLimits& limits) const;
+  /// The solver of a layered ocean, and that of the same ocean without roughness.
+  [[nodiscard]] std::shared_ptr<const EigenraySolver> layered_solver() const;
+  [[nodiscard]] std::shared_ptr<const EigenraySolver> between_mirrors() const;
+  /// The same paths, where they are no louder than energy allows: ensure_bounded().
+  [[nodiscard]] Arrivals bounded(Arrivals found, const Vec3& from, const Vec3& to, double frequency,
+                                 const PathLimits& limits) const;
   [[nodiscard]] ExactKey leg_key(Kept kind, const Vec3& from, const Vec3& to, double frequency,
                                  const PathLimits& limits) const;
   [[nodiscard]] Arrivals followed(std::span<const Arrival> known, const Vec3& from, const Vec3& to,

@@ -260,10 +260,13 @@ FanField field_of_fan(const PropagationCase& run_case, const RayTracer& tracer, 
 
 namespace {
 
-/// Images where they are wanted: they are rays.
+/// Images where they are wanted, and where waves, if those are let, are no better. \param exact
+/// only where they are the wave equation's field
 std::optional<ConvergedField> summed_images(const PropagationCase& run_case, double source_depth,
-                                            const Progress& progress) {
+                                            const Progress& progress, bool exact) {
   if (run_case.solver == FieldSolver::waves) return std::nullopt;
+  if (exact && run_case.solver == FieldSolver::automatic && !mirrors_exactly(run_case))
+    return std::nullopt;
   return image_field(run_case, source_depth, progress);
 }
 
@@ -297,10 +300,13 @@ PropagationResult run_field(const PropagationCase& run_case, const Progress& pro
                 .note =
                     "one beam is wanted: the field is that beam's alone, as wide as its fan "
                     "makes it"};
-    } else if (auto images = summed_images(run_case, depth, of_source)) {
-      answer = std::move(*images);
+    } else if (auto exact = summed_images(run_case, depth, of_source, true)) {
+      answer = std::move(*exact);
     } else if (auto waves = wave_field(run_case, depth, of_source, rays_alone)) {
       answer = std::move(*waves);
+    } else if (auto images = summed_images(run_case, depth, of_source, false)) {
+      answer = std::move(*images);
+      if (!why_no_waves(run_case).empty()) rays_alone.clear();  // there is nothing that rays lack
     } else if (auto paths = path_field(run_case, depth, of_source)) {
       answer = std::move(*paths);
     } else if (run_case.beams.elevations.empty()) {

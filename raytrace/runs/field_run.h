@@ -10,9 +10,9 @@ namespace asdic::detail {
 
 /// The field of a case (Task::field), for each of its sources. The number of beams grows until the
 /// field is sure (docs/theory/fields.md), unless the case lists its elevations: then
-/// these are the fan; in isovelocity water between flat boundaries images are summed instead of
-/// beams (runs/image_field.h), and in other stratified water, if the case's `solver` lets it, the
-/// wave equation is solved (waves/wave_field.h). The same bits for any number of threads. \throws
+/// these are the fan; in stratified water, if the case's `solver` lets it, the wave equation is
+/// solved (waves/wave_field.h), and else in isovelocity water between flat boundaries images are
+/// summed instead of beams (runs/image_field.h). The same bits for any number of threads. \throws
 /// InputError  a source outside the water, no receivers, a fan without width \throws Interrupted
 /// when `progress` says so
 [[nodiscard]] PropagationResult run_field(const PropagationCase& run_case,

@@ -300,13 +300,17 @@ bool is_flat_guide(const PropagationCase& run_case) {
   return std::all_of(speeds.begin(), speeds.end(), [&](double c) { return c == speeds.front(); });
 }
 
-std::string note_of(int images, bool extrapolated, double error_db) {
-  char text[240];
-  std::snprintf(text, sizeof text,
-                "isovelocity water between flat boundaries: the field is the sum over up to %d "
-                "images of the source%s; what is left out is %s %.1g dB at 95 %% of the receivers",
-                images, extrapolated ? ", whose tail, since little is lost, is extrapolated" : "",
-                extrapolated ? "about" : "at most", error_db);
+std::string note_of(int images, bool extrapolated, double error_db, bool exact) {
+  char text[400];
+  std::snprintf(
+      text, sizeof text,
+      "isovelocity water between flat boundaries: the field is the sum over up to %d "
+      "images of the source%s; images left out are %s %.1g dB at 95 %% of the receivers%s",
+      images, extrapolated ? ", whose tail, since little is lost, is extrapolated" : "",
+      extrapolated ? "about" : "at most", error_db,
+      exact ? ""
+            : "; all are reflected as plane waves are, by which the wave equation differs "
+              "by decibels next to a floor's critical angle");
   return text;
 }
 
@@ -336,6 +340,15 @@ bool narrows_to_paths(const PropagationCase& run_case) {
       (run_case.box_depth >= ocean.bottom.depth && -run_case.box_depth <= ocean.surface.depth);
   return hats && forward && within_box && beams.elevations.empty() && !beams.displacement &&
          run_case.receivers.ranges.front() >= 0.0;
+}
+
+bool mirrors_exactly(const PropagationCase& run_case) noexcept {
+  const Environment& ocean = run_case.environment;
+  const auto mirrors = [](const Boundary& wall) {
+    return wall.roughness.smooth() && (std::holds_alternative<Vacuum>(wall.material) ||
+                                       std::holds_alternative<Rigid>(wall.material));
+  };
+  return mirrors(ocean.surface) && mirrors(ocean.bottom);
 }
 
 std::optional<double> depth_in_water(const Environment& ocean, double depth) noexcept {
@@ -381,7 +394,8 @@ std::optional<ConvergedField> image_field(const PropagationCase& run_case, doubl
   int images = 0;
   for (const RaySum& s : sums) images = std::max(images, s.paths);
   result.bounded = !extrapolated;
-  result.note = note_of(images, extrapolated, result.error_db);
+  result.note = note_of(images, extrapolated, result.error_db,
+                        mirrors_exactly(run_case) || !guide.coherent());
   return result;
 }
 

@@ -27,6 +27,10 @@ struct RaySum {
 /// anything. \param sums  [rows × ranges]
 [[nodiscard]] ConvergedField field_of_sums(const std::vector<RaySum>& sums, bool coherent);
 
+/// Whether walls reflect all angles alike, vacuum or rigid and smooth: then images are the wave
+/// equation's field, and not only that of rays.
+[[nodiscard]] bool mirrors_exactly(const PropagationCase& run_case) noexcept;
+
 /// The field of a source in isovelocity water between flat boundaries, as a sum over its images: of
 /// rays that take every path there is, in closed form. Nothing if the case is no such guide, asks
 /// for beams whose limit is not the sum of paths, or has so many receivers and images that beams
@@ -35,8 +39,8 @@ struct RaySum {
 /// Images come in shells of four, k bounces off each wall and one more or less. They are added
 /// until the largest |R_s R_b|^k of steeper paths bounds what is left to 10⁻⁵ of the root of the
 /// summed intensity. A guide that loses nothing has no end of them: their tail is extrapolated
-/// (coherent: Levin's u-transform; intensities: a power series in 1/k). docs/theory/fields.md,
-/// "Images" \throws Interrupted
+/// (coherent: Levin's u-transform; intensities: a power series in 1/k). Each is reflected as a
+/// plane wave is: the note says so. docs/theory/fields.md, "Images" \throws Interrupted
 [[nodiscard]] std::optional<ConvergedField> image_field(const PropagationCase& run_case,
                                                         double source_depth,
                                                         const Progress& progress = {});

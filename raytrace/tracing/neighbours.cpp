@@ -327,7 +327,10 @@ bool NeighbourTest::leg_holds(const FanRay& a, const FanRay& m, const FanRay& b,
         return false;
       continue;
     }
-    if (!zm) continue;
+    if (!zm) {  // rays of one history that run through the column, and one that does not
+      if (!finest_apart(a.angle, b.angle)) return false;
+      continue;
+    }
     const HermiteNode na{a.angle, za->depth, za->slope}, nm{m.angle, zm->depth, zm->slope},
         nb{b.angle, zb->depth, zb->slope};
     const Hermite cubic(na, nb);
@@ -387,11 +390,6 @@ constexpr double finest_gap = 1e-4;
 
 /// How far apart rays that part may stay where there is neither a receiver nor a node near [m].
 constexpr double narrow_gap = 0.3;
-
-bool stopped_by_limits(const FanRay& ray) noexcept {
-  return ray.ended == RayEnd::bounces || ray.ended == RayEnd::faint ||
-         ray.ended == RayEnd::absorbed;
-}
 
 /// Whether the place where a leg begins runs about evenly from one ray to another.
 bool steady(const FanRay& a, const RayLeg& la, const FanRay& b, const RayLeg& lb) noexcept {
@@ -497,8 +495,7 @@ bool NeighbourTest::parting_matters(const FanRay& a, const FanRay& m, const FanR
   bool same_boundary = true, turned_back = false;
   for (const FanRay* ray : {&a, &m, &b}) {
     if (i >= ray->legs.size()) {
-      if (stopped_by_limits(*ray)) return false;  // no more of the two than this one has
-      same_boundary = false;
+      same_boundary = false;  // it has bounced enough, or leaves: those between may go on
       continue;
     }
     for (std::size_t k = i; k < ray->legs.size(); ++k) {
@@ -509,8 +506,8 @@ bool NeighbourTest::parting_matters(const FanRay& a, const FanRay& m, const FanR
       turned_back |= leg.end.range < leg.begin.range;
     }
   }
-  // Rays between may reach further than the three, though not far beyond them.
-  const double room = farthest - nearest, low = turned_back ? nearest - room : nearest;
+  // Rays between may reach further than the three, though not many times further.
+  const double room = 4.0 * (farthest - nearest), low = turned_back ? nearest - room : nearest;
   const auto reached = std::partition_point(columns_.begin(), columns_.end(),
                                             [&](const auto& column) { return column.range < low; });
   if (reached == columns_.end() || reached->range > farthest + room) return false;

@@ -17,8 +17,9 @@ namespace {
 
 using Complex = std::complex<double>;
 
+constexpr double least_share = 1e-8;    // of a wavenumber that cycles are told of
 constexpr double flattest_zones = 0.1;  // of the slope that a wave of one Fresnel zone notices
-constexpr double behind_turn = 10.0;    // phase behind a turn beyond which there is nothing [rad]
+constexpr double fade_radians = 100.0;  // that flat waves fade over, at the furthest range
 
 /// f·g′ − f′·g
 Complex wronskian(Complex f, Complex f_slope, Complex g, Complex g_slope) {
@@ -39,6 +40,8 @@ CycleWaves::CycleWaves(const Environment& ocean, double frequency, double source
   const WaveColumn column(ocean, frequency, source_depth, std::span(&receiver_depth, 1));
   window_ = water_window(ocean, column, frequency, furthest);
   slowest_ = column.at_slowest();
+  flattest_ = std::sqrt(slowest_.k2).real();
+  fade_ = fade_radians / furthest;
   const double widest = std::sqrt(2.0 * column.largest_wavenumber() / furthest);
   least_slope_ = flattest_zones * widest * widest * widest;
   const double upper = (source_is_upper_ ? column.at_source() : column.at_receiver()).slope,
@@ -61,6 +64,18 @@ CycleWaves::CycleWaves(const Environment& ocean, double frequency, double source
   });
 }
 
+double CycleWaves::cycled(double wavenumber) const noexcept {
+  return 0.5 * std::erfc(-4.0 * (2.0 * (flattest_ - wavenumber) / fade_ - 1.0));
+}
+
+int CycleWaves::flat_cycles(double range) const noexcept {
+  const double at = (flattest_ - 0.5 * fade_ - window_.begin) / window_.spacing;
+  if (!(at >= 1.0)) return 0;
+  const std::size_t j = std::min(std::size_t(at), kernels_.size() - 1);
+  const double length = std::arg(kernels_[j].cycle / kernels_[j - 1].cycle) / window_.spacing;
+  return length > 0.0 ? int(range / length) + 1 : 0;
+}
+
 std::size_t CycleWaves::bytes() const noexcept {
   return sizeof *this + kernels_.size() * sizeof(Kernel);
 }
@@ -81,10 +96,9 @@ CycleWaves::Kernel CycleWaves::kernel(const WaveColumn& column, Complex xi) cons
   const double slope =
       std::copysign(std::max(std::abs(slowest_.slope), least_slope_), slowest_.slope);
   const Complex uv = product(over.above, under.below, u.growth + v.growth);
-  if (q.real() < 0.0 && std::abs(q * std::sqrt(q)) > 1.5 * behind_turn * std::abs(slope)) {
-    const Complex all = -2.0 * uv / wronskian(u.u, u.du, v.u, v.du);
-    return {all, 0.0, 0.0, all};
-  }
+  const double share = cycled(xi.real());
+  const Complex flat = -2.0 * (1.0 - share) * uv / wronskian(u.u, u.du, v.u, v.du);
+  if (share < least_share) return {0.0, 0.0, 0.0, flat};
   // Up and down are resolved where all rays are steepest.
   const TravellingWaves wave = travelling_waves(q, slope);
   const Complex both = wronskian(wave.up, wave.up_slope, wave.down, wave.down_slope);
@@ -93,15 +107,15 @@ CycleWaves::Kernel CycleWaves::kernel(const WaveColumn& column, Complex xi) cons
                 d = wronskian(wave.up, wave.up_slope, v.u, v.du) / both;
   const Complex above = wronskian(wave.up, wave.up_slope, u.u, u.du) / (both * a),
                 below = wronskian(v.u, v.du, wave.down, wave.down_slope) / (both * d);
-  const Complex cycle = above * below, scale = -2.0 / both;
-  const Complex term = scale * uv / (a * d), all = term / (1.0 - cycle);
-  if (turns_ == Turns::between) return {term, term * cycle, cycle, all};
+  const Complex cycle = above * below, scale = -2.0 * share / both;
+  const Complex term = scale * uv / (a * d);
+  if (turns_ == Turns::between) return {term, term * cycle, cycle, flat};
   // What has turned at the one side before both ends, and after: a sum over the others' turns.
   const Complex turned = turns_ == Turns::above
                              ? below * product(over.above, under.above, 2.0 * u.growth) / (a * a)
                              : above * product(over.below, under.below, 2.0 * v.growth) / (d * d);
   const Complex next = scale * turned;
-  return {(term - next) / (1.0 - cycle), next, cycle, all};
+  return {(term - next) / (1.0 - cycle), next, cycle, flat};
 }
 
 std::vector<Complex> CycleWaves::terms(std::size_t count, double range) const {
@@ -112,7 +126,7 @@ std::vector<Complex> CycleWaves::terms(std::size_t count, double range) const {
     sums[0] += f * k.first;
     Complex term = f * k.next;
     for (std::size_t n = 1; n < count; ++n, term *= k.cycle) sums[n] += term;
-    sums[count] += f * k.all;
+    sums[count] += f * k.flat;
   }
   return sums;
 }
@@ -147,43 +161,43 @@ Environment without(Environment ocean, bool surface, bool bottom) {
   return ocean;
 }
 
-/// Rays of one term.
-struct TermRays {
+/// Rays that go into each other, and their waves: those of one term, or the flat ones.
+struct WaveGroup {
   std::vector<std::size_t> rays;  // of all arrivals
-  Complex lacking = 0.0;          // what the term has more than they
+  std::vector<double> weights;    // [rays] share of their waves that is among these
+  Complex lacking = 0.0;          // what these waves have more than they
+
+  void add(std::size_t ray, double weight, Complex pressure) {
+    rays.push_back(ray);
+    weights.push_back(weight);
+    lacking -= weight * pressure;
+  }
 };
 
-/// How far the amplitudes of rays may be off, and what share of their waves the window holds.
-struct Judged {
-  std::vector<RayError> errors;
-  std::vector<double> weights;
-};
-
-/// The amplitudes of a term's rays so that their sum is the term: of each what is sure of its
-/// amplitude, and of what is lacking then a share by how far it may be off. \return [term.rays]
-std::vector<Complex> shared_amplitudes(const TermRays& term, const Arrivals& found,
-                                       const Judged& judged, double frequency) {
+/// Adds to amplitudes so that the sum of a group's rays is its waves: from each is taken what is
+/// not sure of its amplitude, and of what is lacking then each has a share by how far it may be
+/// off. \param amplitudes  [found]
+void share(const WaveGroup& group, const Arrivals& found, const std::vector<RayError>& errors,
+           double frequency, std::vector<Complex>& amplitudes) {
   const auto unsure = [](double error) { return 1.0 - 1.0 / (1.0 + error * error); };
-  Complex lacking = term.lacking;
+  Complex lacking = group.lacking;
   double all = 0.0;
-  std::vector<double> left_out, doubt;
-  for (const std::size_t i : term.rays) {
-    const RayError& error = judged.errors[i];
-    left_out.push_back(judged.weights[i] * unsure(error.focusing));
-    lacking += left_out.back() * pressure(found[i], frequency);
-    doubt.push_back(judged.weights[i] * std::norm(found[i].amplitude) *
-                    unsure(std::max(least_error, error.focusing + error.turning)));
+  std::vector<double> doubt;
+  for (std::size_t n = 0; n < group.rays.size(); ++n) {
+    const std::size_t i = group.rays[n];
+    const Arrival& ray = found[i];
+    const double left_out = group.weights[n] * unsure(errors[i].focusing);
+    lacking += left_out * pressure(ray, frequency);
+    amplitudes[i] -= left_out * ray.amplitude;
+    doubt.push_back(group.weights[n] * std::norm(ray.amplitude) *
+                    unsure(std::max(least_error, errors[i].focusing + errors[i].turning)));
     all += doubt.back();
   }
-  std::vector<Complex> amplitudes;
-  for (std::size_t n = 0; n < term.rays.size(); ++n) {
-    const Arrival& ray = found[term.rays[n]];
-    const double share = doubt[n] / all;
-    const double turns = std::fmod(frequency * ray.delay, 1.0);
-    amplitudes.push_back((1.0 - left_out[n]) * ray.amplitude +
-                         share * lacking * std::polar(1.0, 2.0 * pi * turns));
+  for (std::size_t n = 0; n < group.rays.size(); ++n) {
+    const std::size_t i = group.rays[n];
+    const double turns = std::fmod(frequency * found[i].delay, 1.0);
+    amplitudes[i] += doubt[n] / all * lacking * std::polar(1.0, 2.0 * pi * turns);
   }
-  return amplitudes;
 }
 
 /// A range that many have in common, up to a fifth further.
@@ -205,11 +219,11 @@ void put_waves(const EigenraySolver& solver, double source_depth, double receive
                const CyclesKeeper& keeper) {
   const Environment& ocean = solver.environment();
   if (!(range > 0.0) || of_one_speed(ocean)) return;
-  Judged judged{.errors =
-                    ray_errors(solver, source_depth, receiver_depth, frequency, limits, found)};
+  const std::vector<RayError> errors =
+      ray_errors(solver, source_depth, receiver_depth, frequency, limits, found);
   double energy = 0.0, wrong = 0.0;
   for (std::size_t i = 0; i < found.size(); ++i) {
-    const double error = std::min(1.0, judged.errors[i].focusing + judged.errors[i].turning);
+    const double error = std::min(1.0, errors[i].focusing + errors[i].turning);
     energy += std::norm(found[i].amplitude);
     wrong += std::norm(found[i].amplitude) * error * error;
   }
@@ -241,11 +255,16 @@ void put_waves(const EigenraySolver& solver, double source_depth, double receive
   };
   int first = 0, last = -1;
   bool waterborne = false;
+  std::vector<double> weights;  // [found] in the window of wavenumbers
+  std::size_t flattest = 0;     // of rays in it
   for (const Arrival& ray : found) {
     waterborne = waterborne || ray.bottom_bounces == 0;
-    judged.weights.push_back(plain->window().weight(omega * ray.horizontal_slowness));
-    if (judged.weights.back() < least_weight) continue;
+    weights.push_back(plain->window().weight(omega * ray.horizontal_slowness));
+    if (weights.back() < least_weight || !(std::norm(ray.amplitude) > 0.0)) weights.back() = 0.0;
+    if (weights.back() == 0.0) continue;
     const int term = term_of(ray);
+    const std::size_t here = weights.size() - 1;
+    if (last < 0 || ray.horizontal_slowness > found[flattest].horizontal_slowness) flattest = here;
     first = last < 0 ? term : std::min(first, term);
     last = std::max(last, term);
   }
@@ -253,46 +272,51 @@ void put_waves(const EigenraySolver& solver, double source_depth, double receive
   first = std::max(0, first - 1);
   const std::size_t count = std::size_t(last) + 2;
   std::map<std::pair<bool, bool>, std::vector<Complex>> known;
-  const auto term_without = [&](bool surface, bool bottom, int term) {
+  const auto waves_without = [&](bool surface, bool bottom, std::size_t number) {
     std::vector<Complex>& there = known[{surface, bottom}];
     if (there.empty()) there = cycles(surface, bottom)->terms(count, range);
-    return there[std::size_t(term)];
+    return there[number];
   };
-  std::map<int, TermRays> terms;
-  for (int term = first; term < int(count); ++term) {
-    // A term has so many turns at either side, or one more.
-    const bool surface = no_surface || term + 1 > limits.max_surface_bounces,
-               bottom = no_bottom || term + 1 > limits.max_bottom_bounces;
-    TermRays& here = terms[term];
-    here.lacking = term_without(surface, bottom, term);
-    if (!waterborne && !bottom) here.lacking -= term_without(surface, true, term);
+  // Of a term, or of flat waves (number = count), with so many bounces off either boundary at most.
+  const auto group_of = [&](std::size_t number, int bounces) {
+    const bool flat = number == count;
+    const bool surface = no_surface || bounces > limits.max_surface_bounces,
+               bottom = no_bottom || bounces > limits.max_bottom_bounces;
+    WaveGroup here{.lacking = waves_without(surface, bottom, number)};
+    if (!waterborne && !bottom) here.lacking -= waves_without(surface, true, number);
     for (std::size_t i = 0; i < found.size(); ++i) {
       const Arrival& ray = found[i];
-      if (judged.weights[i] < least_weight || !(std::norm(ray.amplitude) > 0.0) ||
-          term_of(ray) != term || (surface && ray.surface_bounces > 0) ||
-          (bottom && ray.bottom_bounces > 0))
+      const double cycled = plain->cycled(omega * ray.horizontal_slowness);
+      const double weight = weights[i] * (flat ? 1.0 - cycled : cycled);
+      if (weight < least_weight || (!flat && term_of(ray) != int(number)) ||
+          (surface && ray.surface_bounces > 0) || (bottom && ray.bottom_bounces > 0))
         continue;
-      here.rays.push_back(i);
-      here.lacking -= judged.weights[i] * pressure(ray, frequency);
+      here.add(i, weight, pressure(ray, frequency));
     }
-  }
-  // What there is of a term without rays goes to the next one that has some.
-  for (const auto& [term, here] : terms)
-    for (const int next : {term - 1, term + 1}) {
-      const auto other = terms.find(next);
-      if (!here.rays.empty() || other == terms.end() || other->second.rays.empty()) continue;
-      other->second.lacking += here.lacking;
-      break;
-    }
-  std::vector<std::pair<std::size_t, Complex>> changed;
-  for (const auto& [term, here] : terms) {
-    const std::vector<Complex> amplitudes = shared_amplitudes(here, found, judged, frequency);
-    for (std::size_t n = 0; n < here.rays.size(); ++n)
-      if (std::norm(amplitudes[n] - found[here.rays[n]].amplitude) >
-          least_change * least_change * energy)
-        changed.emplace_back(here.rays[n], amplitudes[n]);
-  }
-  for (const auto& [i, amplitude] : changed) make_wave(found[i], amplitude / found[i].amplitude);
+    return here;
+  };
+  std::map<int, WaveGroup> groups;
+  // A term has so many turns at either side, or one more.
+  for (int term = first; term < int(count); ++term)
+    groups.emplace(term, group_of(std::size_t(term), term + 1));
+  // What there is of waves without rays goes to the next ones that have some.
+  const auto hand_over = [&](const WaveGroup& from, int to) {
+    const auto other = groups.find(to);
+    if (!from.rays.empty() || other == groups.end() || other->second.rays.empty()) return false;
+    other->second.lacking += from.lacking;
+    return true;
+  };
+  const WaveGroup flat = group_of(count, plain->flat_cycles(range));
+  hand_over(flat, term_of(found[flattest]));
+  for (const auto& [term, here] : groups)
+    if (!hand_over(here, term - 1)) hand_over(here, term + 1);
+  std::vector<Complex> amplitudes;
+  for (const Arrival& ray : found) amplitudes.push_back(ray.amplitude);
+  share(flat, found, errors, frequency, amplitudes);
+  for (const auto& [term, here] : groups) share(here, found, errors, frequency, amplitudes);
+  for (std::size_t i = 0; i < found.size(); ++i)
+    if (std::norm(amplitudes[i] - found[i].amplitude) > least_change * least_change * energy)
+      make_wave(found[i], amplitudes[i] / found[i].amplitude);
 }
 
 }  // namespace asdic::detail

@@ -40,14 +40,22 @@ class CycleWaves {
   /// horizontal at source or receiver have one term.
   [[nodiscard]] int term_of(const Branch& branch) const noexcept;
 
-  /// p of the first terms, and that of all of them, however many, as one more; \return [count + 1]
+  /// How much of a wavenumber's waves is told of by cycles, 1 … 0: those so flat that a cycle is
+  /// not resolved at the furthest range have no terms. \param wavenumber  [1/m]
+  [[nodiscard]] double cycled(double wavenumber) const noexcept;
+  /// How many cycles flat waves go through up to a range, about.
+  [[nodiscard]] int flat_cycles(double range) const noexcept;
+
+  /// p of the first terms, and that of flat waves, however many cycles, as one more;
+  /// \return [count + 1]
   /// \param range  up to the furthest [m]
   [[nodiscard]] std::vector<std::complex<double>> terms(std::size_t count, double range) const;
 
  private:
-  /// Of one wavenumber, in g: the first term, the next one, and what each after that has more.
+  /// Of one wavenumber, in g: the first term, the next one, what each after that has more, and
+  /// what is too flat for terms.
   struct Kernel {
-    std::complex<double> first, next, cycle, all;
+    std::complex<double> first, next, cycle, flat;
   };
   [[nodiscard]] Kernel kernel(const WaveColumn& column, std::complex<double> xi) const noexcept;
 
@@ -59,7 +67,8 @@ class CycleWaves {
   bool source_is_upper_, affordable_ = false;
   WaveColumn::Squared slowest_;
   Turns turns_;
-  double least_slope_;           // of what waves are resolved by [1/m³]
+  double flattest_, fade_;  // wavenumber at the slowest depth, and what waves beside it fade over
+  double least_slope_;      // of what waves are resolved by [1/m³]
   std::vector<Kernel> kernels_;  // [window_.count]
 };
 

@@ -59,7 +59,8 @@ void VolumeLayer::describe(Fields& setting) {
   Quantity strength = quantity::scattering_strength;
   strength.reference = "1/m";
   setting(required("strength_db"), strength_db, strength, "for backscattering of a unit volume");
-  setting(by_default("sheets", "one for every 50 m"), sheets, 1, 1000, "that stand for it");
+  setting(by_default("sheets", "one for every 50 m, thinner near the platforms"), sheets, 1, 1000,
+          "that stand for it");
   field.describe(setting);
 }
 

@@ -38,7 +38,8 @@ void ScattererStatistics::describe(Fields& field) {
   bool frozen = std::isinf(coherence_time);
   const double otherwise = frozen ? 0.0 : coherence_time;
   std::optional<double> time = frozen ? std::nullopt : std::optional(coherence_time);
-  field("coherence_time", time, {.noun = "time", .unit = "s", .low = 0.0, .high = 1e9},
+  field("coherence_time", time,
+        {.noun = "time", .unit = "s", .low = 1e-6, .high = 1e9, .or_zero = true},
         "after which a scatterer's weight is another; 0: with every ping");
   if (time) frozen = false;
   field("frozen", frozen, "whether weights never change");
@@ -49,8 +50,7 @@ void ScattererStatistics::describe(Fields& field) {
         "of the gamma-distributed texture");
   if (k_shape || field.exhaustive())
     field("correlation_length", correlation_length,
-          {.noun = "length", .unit = "m", .low = 0.0, .high = 1e6, .above = true},
-          "of the texture");
+          {.noun = "length", .unit = "m", .low = 1e-3, .high = 1e6}, "of the texture");
 }
 
 std::uint64_t ScattererKey::entity(std::uint64_t identity) const noexcept {
@@ -114,12 +114,15 @@ std::complex<double> ScattererWeights::operator()(std::uint64_t entity) const no
 double texture_amplitude(const ScattererStatistics& statistics, const Vec2& place,
                          std::uint64_t boundary, std::uint64_t seed) noexcept {
   if (!statistics.k_shape) return 1.0;
-  const auto square = [&](double x) {
+  const auto square = [&](double x, std::uint32_t word) {
     return static_cast<std::uint64_t>(
-        static_cast<std::int64_t>(std::floor(x / statistics.correlation_length)));
+        static_cast<std::int64_t>(std::floor(x / statistics.correlation_length + unit(word))));
   };
-  RandomStream draw(seed, Draw::scatterer_texture, 0,
-                    mixed(mixed(boundary, square(place.x())), square(place.y())));
+  // Where the squares' corners lie is drawn: a sonar at [0, 0] is not at one of them every time.
+  const auto origin = RandomStream(seed, Draw::scatterer_texture, 1, boundary).block(0);
+  RandomStream draw(
+      seed, Draw::scatterer_texture, 0,
+      mixed(mixed(boundary, square(place.x(), origin[0])), square(place.y(), origin[1])));
   return std::sqrt(gamma_of_mean_one(*statistics.k_shape, draw));
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <variant>
 
@@ -16,9 +17,45 @@ ScatteringSheet::Law law_of(const std::variant<Model...>& law) {
 
 }  // namespace
 
+std::vector<double> sheets_of(const VolumeLayer& layer, const LayerEnds& ends) {
+  constexpr double thickest = 50.0, share = 0.115;
+  constexpr std::size_t most = 200;
+  const double height = layer.bottom - layer.top;
+  if (layer.sheets || ends.depths.empty()) {
+    const int count =
+        layer.sheets.value_or(std::max(1, static_cast<int>(std::ceil(height / thickest))));
+    return std::vector<double>(static_cast<std::size_t>(count), height / count);
+  }
+  const bool upward = std::all_of(ends.depths.begin(), ends.depths.end(),
+                                  [&](double depth) { return depth >= layer.bottom; });
+  const double edge = upward ? layer.bottom : layer.top;  // where the first sheet begins
+  const auto nearest = [&](double from, double to) {      // distance of an end from that piece
+    const double low = upward ? edge - to : edge + from, high = upward ? edge - from : edge + to;
+    double distance = std::numeric_limits<double>::infinity();
+    for (const double depth : ends.depths)
+      distance = std::min(distance, std::max({0.0, low - depth, depth - high}));
+    return distance;
+  };
+  for (double finest = ends.finest;; finest *= 2.0) {
+    std::vector<double> found;
+    double cut = 0.0;
+    while (cut < height && found.size() <= most) {
+      const double allowed = found.empty() ? 0.5 * share : share;
+      double next = thickest;
+      while (next > finest && next > allowed * nearest(cut, cut + next)) next *= 0.9;
+      found.push_back(std::max(next, finest));
+      cut += found.back();
+    }
+    if (found.size() > most) continue;
+    for (double& thickness : found) thickness *= height / cut;
+    if (upward) std::reverse(found.begin(), found.end());
+    return found;
+  }
+}
+
 std::vector<ScatteringPart> scattering_parts(const ReverberationSettings& settings,
                                              double wind_speed, double sound_speed,
-                                             std::span<const int> winds) {
+                                             std::span<const int> winds, const LayerEnds& ends) {
   std::vector<ScatteringPart> found;
   if (!settings.enabled) return found;
   if (settings.surface_scatters) {
@@ -41,19 +78,16 @@ std::vector<ScatteringPart> scattering_parts(const ReverberationSettings& settin
   }
   std::uint64_t id = 2;
   for (const VolumeLayer& layer : settings.volume) {
-    const double height = layer.bottom - layer.top;
-    const int sheets =
-        layer.sheets.value_or(std::max(1, static_cast<int>(std::ceil(height / 50.0))));
-    const double thickness = height / sheets;
-    const ScatteringSheet::Law law = VolumeSheet{layer.strength_db, thickness};
-    for (int i = 0; i < sheets; ++i) {
-      const ScatteringPart sheet{.level = GroundLevel(layer.top + (i + 0.5) * thickness),
-                                 .law = law,
+    double top = layer.top;
+    for (const double thickness : sheets_of(layer, ends)) {
+      const ScatteringPart sheet{.level = GroundLevel(top + 0.5 * thickness),
+                                 .law = VolumeSheet{layer.strength_db, thickness},
                                  .field = layer.field,
                                  .weights = Draw::volume_weight,
                                  .id = id++,
                                  .thickness = thickness};
       found.push_back(sheet);
+      top += thickness;
     }
   }
   return found;

@@ -58,6 +58,20 @@ std::array<float, 3> phases_of(const PathPair& pair, const GroundPiece& piece,
           static_cast<float>(phases.through * (pair.out_ends->down + pair.back_ends->down))};
 }
 
+/// How far its delays differ over it [s].
+float extent_of(const PathPair& pair, const GroundPiece& piece) noexcept {
+  return static_cast<float>(std::abs(steepness(pair, piece.outward)) * piece.length +
+                            std::abs(pair.out_ends->down + pair.back_ends->down) * piece.thickness);
+}
+
+/// exp(−½|Δ|²) of two sounds' phases over their piece; 0 where that is nothing.
+float in_phase(const std::array<float, 3>& one, const std::array<float, 3>& other) noexcept {
+  constexpr float nothing = 18.0F;  // e⁻⁹
+  float phases = 0.0F;
+  for (std::size_t k = 0; k < 3; ++k) phases += (one[k] - other[k]) * (one[k] - other[k]);
+  return phases < nothing ? std::exp(-0.5F * phases) : 0.0F;
+}
+
 /// A sound of a place at a time.
 struct SoundNow {
   std::complex<double> pressure;
@@ -66,21 +80,14 @@ struct SoundNow {
 
 /// Mean over the place's piece of |Σp|².
 double power_of(std::span<const SoundNow> sounds) noexcept {
-  constexpr float nothing = 18.0F;  // e⁻⁹
   double power = 0.0;
   for (std::size_t i = 0; i < sounds.size(); ++i) {
     const SoundNow& a = sounds[i];
     power += std::norm(a.pressure);
-    for (const SoundNow& b : sounds.subspan(i + 1)) {
-      float phases = 0.0F;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const float apart = a.phases[k] - b.phases[k];
-        phases += apart * apart;
-      }
-      if (!(phases < nothing)) continue;
-      power += 2.0 * double(std::exp(-0.5F * phases)) *
-               (a.pressure.real() * b.pressure.real() + a.pressure.imag() * b.pressure.imag());
-    }
+    for (const SoundNow& b : sounds.subspan(i + 1))
+      if (const float together = in_phase(a.phases, b.phases); together > 0.0F)
+        power += 2.0 * double(together) *
+                 (a.pressure.real() * b.pressure.real() + a.pressure.imag() * b.pressure.imag());
   }
   return std::max(0.0, power);
 }
@@ -175,7 +182,8 @@ struct Middles {
             .delay = pair.delay,
             .amplitude =
                 pair.amplitude * std::sqrt(pair.area * area * piece.share * pair.reciprocal),
-            .phases = phases_of(pair, ground, phases)},
+            .phases = phases_of(pair, ground, phases),
+            .extent = extent_of(pair, ground)},
            pair.power * area,
            piece.share,
            double(field.grid.azimuths) * field.copies_of(piece.ring, sectors[piece.sector])});
@@ -318,13 +326,13 @@ std::optional<ExactKey> ExpectedReverberation::key(std::span<const ScatteringFie
   ExactKey key(kind, 0);
   key.add_all(pulse_duration, fields.size());
   for (const ScatteringField& f : fields) {
-    // All but motion, statistics, draws' keys and where in a sheet scatterers lie.
+    // All but motion, statistics and draws' keys.
     const auto& [sheet, grid, field, weights, boundary, depth, thickness, received_by, bearings,
                  divided_below, bounces, drawn_anew, share] = f;
     const auto& [anchor, identity, spacing, azimuths, per_cell, first_bearing, rings] = grid;
     if (!sheet.add_to(key)) return std::nullopt;
     key.add_all(anchor, spacing, azimuths, per_cell, first_bearing, rings, depth, bearings,
-                divided_below, share);
+                divided_below, thickness, share);
   }
   return key;
 }
@@ -361,6 +369,99 @@ double ExpectedReverberation::power(const std::function<std::complex<double>(dou
     }
   }
   return power;
+}
+
+namespace {
+
+/// A sound of a place, the carrier's phase at its delay in its pressure.
+struct PlacedSound {
+  std::complex<double> pressure;
+  double delay, extent;
+  const std::array<float, 3>* phases;
+  bool by_itself;
+};
+
+/// Steps of time into which energy is put.
+struct EnergySteps {
+  double first, step;
+  std::vector<double> energy;
+
+  /// Energy that comes evenly over the pulse's duration, evenly over the extent of a delay: a
+  /// trapezoid of time.
+  void add(double energy_of, double delay, double extent, double duration) noexcept {
+    const double lasts = std::max(extent, 1e-3 * duration);
+    const double begin = delay - 0.5 * lasts;
+    const auto ramp = [](double t) { return t > 0.0 ? 0.5 * t * t : 0.0; };
+    const auto until = [&](double t) {
+      return (ramp(t - begin) - ramp(t - begin - duration) - ramp(t - begin - lasts) +
+              ramp(t - begin - lasts - duration)) /
+             (duration * lasts);
+    };
+    const double from = (begin - first) / step, to = (begin + lasts + duration - first) / step;
+    if (!(to > 0.0) || from >= static_cast<double>(energy.size())) return;
+    const auto last = std::min(energy.size(), static_cast<std::size_t>(to) + 1);
+    auto i = static_cast<std::size_t>(std::max(0.0, from));
+    double before = until(first + static_cast<double>(i) * step);
+    for (; i < last; ++i) {
+      const double after = until(first + static_cast<double>(i + 1) * step);
+      energy[i] += energy_of * (after - before);
+      before = after;
+    }
+  }
+};
+
+}  // namespace
+
+std::vector<double> ExpectedReverberation::mean_power(const SentPulse& pulse, double first,
+                                                      double step, std::size_t count) const {
+  constexpr std::size_t most_tasks = 16;
+  std::vector<std::size_t> cuts;  // between places
+  for (std::size_t task = 0; task <= most_tasks; ++task) {
+    std::size_t at = samples.size() * task / most_tasks;
+    while (at > 0 && at < samples.size() && samples[at].place == samples[at - 1].place) ++at;
+    cuts.push_back(at);
+  }
+  std::vector<EnergySteps> parts(most_tasks, {first, step, {}});
+  const double omega = 2.0 * pi * pulse.frequency;
+  in_parallel(most_tasks, [&](std::size_t task) {
+    EnergySteps& steps = parts[task];
+    steps.energy.assign(count, 0.0);
+    std::vector<PlacedSound> here;
+    for (std::size_t i = cuts[task]; i < cuts[task + 1]; ++i) {
+      const Sample& sample = samples[i];
+      const double turn = std::fmod(omega * sample.delay, 2.0 * pi);
+      here.push_back({sample.amplitude * std::polar(1.0, -turn), sample.delay,
+                      double(sample.extent), &sample.phases, sample.by_itself});
+      if (i + 1 < cuts[task + 1] && samples[i + 1].place == sample.place &&
+          samples[i + 1].part == sample.part)
+        continue;
+      std::sort(here.begin(), here.end(),
+                [](const PlacedSound& a, const PlacedSound& b) { return a.delay < b.delay; });
+      for (std::size_t a = 0; a < here.size(); ++a) {
+        const PlacedSound& one = here[a];
+        steps.add(pulse.energy * std::norm(one.pressure), one.delay, one.extent, pulse.duration);
+        for (std::size_t b = a + 1; b < here.size() && !one.by_itself; ++b) {
+          const PlacedSound& other = here[b];
+          const double later = other.delay - one.delay;
+          if (later >= pulse.duration) break;
+          if (other.by_itself) continue;
+          const auto together = double(in_phase(*one.phases, *other.phases));
+          if (!(together > 0.0)) continue;
+          const double both =
+              2.0 * together *
+              (one.pressure * std::conj(other.pressure) * pulse.coherence(later)).real();
+          steps.add(pulse.energy * both, 0.5 * (one.delay + other.delay),
+                    0.5 * (one.extent + other.extent), pulse.duration);
+        }
+      }
+      here.clear();
+    }
+  });
+  std::vector<double> mean(count, 0.0);
+  for (const EnergySteps& part : parts)
+    for (std::size_t i = 0; i < count; ++i) mean[i] += part.energy[i] / step;
+  for (double& power : mean) power = std::max(0.0, power);
+  return mean;
 }
 
 }  // namespace asdic::detail

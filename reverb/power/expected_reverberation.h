@@ -10,6 +10,7 @@
 #include "core/memory_budget.h"
 #include "core/propagation_memory.h"
 #include "reverb/fields/scattering_field.h"
+#include "reverb/power/pulse_coherence.h"
 
 namespace asdic::detail {
 
@@ -26,6 +27,7 @@ struct ExpectedReverberation {
     std::complex<double> amplitude = 0.0;  // of the area that the place stands for
     /// Standard deviation of its phase over that area: outward, beside that and in depth [rad].
     std::array<float, 3> phases{};
+    float extent = 0.0F;  ///< of its delay over that area and depth, about `delay` [s]
   };
   /// Rings or sectors begin…end of a field.
   struct Block {
@@ -59,6 +61,19 @@ struct ExpectedReverberation {
   /// and b through the middle of a cell, Δ their phases' standard deviations over it.
   [[nodiscard]] double power(const std::function<std::complex<double>(double)>& sent,
                              double duration, double t) const;
+
+  /// The pulse, as a mean over time asks for it.
+  struct SentPulse {
+    const PulseCoherence& coherence;
+    double duration = 0.0;   ///< [s]
+    double energy = 0.0;     ///< ∫|s|²dt [s]
+    double frequency = 0.0;  ///< centre [Hz]
+  };
+  /// The same in steps of time no shorter than the pulse: the mean over each. Every place sends
+  /// evenly over the extent of its delay. \param first  beginning of the first step [s]
+  /// \param step  [s]   \return [count]
+  [[nodiscard]] std::vector<double> mean_power(const SentPulse& pulse, double first, double step,
+                                               std::size_t count) const;
 
  private:
   void cut_into_blocks(std::size_t field, const std::vector<double>& of_ring);

@@ -501,17 +501,19 @@ ReverberationStreams::ReverberationStreams(std::span<const ScatteringField* cons
     blocks[b].first = streams.size();
     for (const std::size_t i : cells) {
       const CellSum& sum = sums.all()[i];
-      streams.push_back({.entity = sum.cell.entity(),
-                         .first = intensity.size(),
-                         .first_part = parts.size(),
-                         .parts = sum.parts.size()});
-      for (const float in_bin : sums.power(sum))
-        intensity.push_back(in_bin / static_cast<float>(bin));
+      const std::size_t first_part = parts.size();
       double before = 0.0;
       for (const PartSum& part : sum.parts) {
+        if (!(part.power() > 0.0)) continue;  // no sound, and so no direction
         parts.push_back(finished(part));
         parts.back().chance = (before += part.power()) / sum.power();
       }
+      streams.push_back({.entity = sum.cell.entity(),
+                         .first = intensity.size(),
+                         .first_part = first_part,
+                         .parts = parts.size() - first_part});
+      for (const float in_bin : sums.power(sum))
+        intensity.push_back(in_bin / static_cast<float>(bin));
     }
     blocks[b].last = streams.size();
   }

@@ -1,6 +1,7 @@
 #include "serve/commands/ping.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/text.h"
 #include "raytrace/parallel/stop.h"
@@ -8,6 +9,7 @@
 #include "serve/prepared_ping.h"
 #include "serve/refusal.h"
 #include "serve/sent_ping.h"
+#include "sonar/ping/levels.h"
 #include "sonar/ping/recorded_replica.h"
 #include "sonar/scenario/sampling.h"
 
@@ -78,6 +80,15 @@ Answer PingCommand::run(SessionState& session, const Command& command) {
     file->keep();
     record.timings.write = session.clock() - start;
   }
+  if (const double apart = std::abs(sent.time - session.latest_ping);
+      request.deliver != Delivery::none && apart < end_of_record(scenario))
+    served.warnings.push_back("time: another ping was sent " + to_text(apart) +
+                              " s from this one, less than a record: neither record has what is "
+                              "received of the other; \"listen\" has both");
+  if (std::string beside =
+          echo_beside_record(record, scenario, ping.simulator->pulse(sent.transmitter));
+      !beside.empty())
+    served.warnings.push_back(std::move(beside));
   ++session.pings;
   session.latest_ping = std::max(session.latest_ping, sent.time);
   session.schedule.sent(sent, request.time || session.acts);

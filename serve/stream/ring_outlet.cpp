@@ -15,6 +15,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "io/files/output_lock.h"
 #include "serve/stream/descriptor.h"
 #include "serve/stream/stream_turn.h"
 
@@ -76,7 +77,7 @@ class RingOutlet::File {
     make_room();
     descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
     if (descriptor_ < 0) fail(errno);
-    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) fail(errno);
+    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && !says_no_locks(errno)) fail(errno);
     if (const int error = ::posix_fallocate(descriptor_, 0, static_cast<off_t>(bytes_)))
       fail(error);
     void* const at = ::mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_SHARED, descriptor_, 0);
@@ -185,7 +186,7 @@ class RingOutlet::File {
     const bool ours = old >= 0 &&
                       ::read(old, begin.data(), begin.size()) == ssize_t(begin.size()) &&
                       begin == ring_magic;
-    const bool used = ours && ::flock(old, LOCK_EX | LOCK_NB) != 0;
+    const bool used = ours && ::flock(old, LOCK_EX | LOCK_NB) != 0 && !says_no_locks(errno);
     if (ours && !used) {  // whoever still maps it is told
       const std::uint32_t over = gone;
       static_cast<void>(!::pwrite(old, &over, sizeof over, offsetof(RingHeader, state)));

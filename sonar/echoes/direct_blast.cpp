@@ -4,7 +4,9 @@
 
 #include "core/doppler.h"
 #include "core/mixed_bits.h"
+#include "sonar/echoes/leg_response.h"
 #include "sonar/echoes/one_leg.h"
+#include "sonar/echoes/outer_phones.h"
 #include "sonar/paths/moving_paths.h"
 #include "sonar/paths/plane_wave.h"
 #include "sonar/paths/wave_moments.h"
@@ -70,8 +72,8 @@ std::optional<DelayCurve> curve_of(const EchoContext& context, const Kinematics&
                      highest, aperture);
 }
 
-/// The blast at one phone, or at the reference point for all of them.
-void receive(const EchoContext& context, int channel, DirectBlast& blast) {
+/// The blast at one phone, or at the reference point for all of them. \return where it is received
+Vec3 receive(const EchoContext& context, int channel, DirectBlast& blast) {
   const PingGeometry& geometry = context.geometry;
   // Of the phone from the reference point, as it was at the ping: what its return is gridded by.
   const Vec3 x = channel < 0 ? Vec3(Vec3::Zero())
@@ -79,28 +81,46 @@ void receive(const EchoContext& context, int channel, DirectBlast& blast) {
   const Kinematics& source = geometry.source();
   BlastPaths paths = blast_paths(context, channel);
   blast.bounces.include(paths.followed);
-  for (const MetPath& met : paths.met) {
+  std::shared_ptr<const MetLeg> leg;  // for other frequencies than the centre
+  if (context.listens && context.pulse != nullptr &&
+      context.scenario().propagation.band != BandOfLosses::narrow)
+    leg = std::make_shared<const MetLeg>(MetLeg{.from = source.position,
+                                                .to = paths.end,
+                                                .paths = paths.leg.arrivals,
+                                                .frequency = context.frequency,
+                                                .limits = paths.limits});
+  for (std::size_t i = 0; i < paths.met.size(); ++i) {
+    const MetPath& met = paths.met[i];
     EchoPath path_received = received_along(context, source, met);
     path_received.received.delay -=
         path_received.received.slowness.dot(x);  // at the reference point
     path_received.received.channel = channel < 0 ? Return::all_channels : channel;
     path_received.curve = curve_of(context, source, paths.receiver, channel, met,
                                    path_received.received, paths.limits);
+    const std::size_t own = blast.received.size();
     blast.received.push_back(path_received);
     scatter_along(context, source, 0.0, met,
                   mixed(static_cast<std::uint64_t>(geometry.sent().transmitter), ~0ULL),
                   path_received, blast.received);
+    if (leg != nullptr) blast.received[own].legs = {path_on_leg(leg, i, source.position, met)};
   }
   shorten_bounces(paths.leg.arrivals,
                   channel < 0 ? 1 : geometry.array(context.array).phones.size());
   blast.legs.push_back(std::move(paths.leg));
+  return paths.end;
 }
 
-/// Whether all that is received at the reference point is a plane wave to the phones.
-bool plane_waves(const EchoContext& context, const DirectBlast& blast) {
-  return std::all_of(blast.received.begin(), blast.received.end(), [&](const EchoPath& path) {
-    return is_plane_wave(context, path.received, path.response.path_length);
-  });
+/// Whether all that is received at the reference point is a plane wave to the phones. \param place
+/// of the reference point when the first sound comes [m]
+bool plane_waves(const EchoContext& context, const DirectBlast& blast, const Vec3& place) {
+  return std::all_of(blast.received.begin(), blast.received.end(),
+                     [&](const EchoPath& path) {
+                       return is_plane_wave(context, path.received, path.response.path_length);
+                     }) &&
+         is_alike_at_phones(context, {blast.legs.back(), place}, [&](int phone) -> ArrivedLeg {
+           BlastPaths own = blast_paths(context, phone);
+           return {std::move(own.leg), own.end};
+         });
 }
 
 }  // namespace
@@ -111,6 +131,7 @@ BlastPaths blast_paths(const EchoContext& context, int channel) {
   const Vec3 from = geometry.source().position;
   BlastPaths found{.leg = {},
                    .met = {},
+                   .end = {},
                    .receiver = geometry.receiver(context.array, channel),
                    .followed = {},
                    .limits = {}};
@@ -125,6 +146,7 @@ BlastPaths blast_paths(const EchoContext& context, int channel) {
   way.leg.kind = Leg::Kind::source_to_array;
   way.leg.array = context.array;
   way.leg.channel = channel;
+  found.end = way.end.position;
   if (geometry.is_own(context.array))
     std::erase_if(way.leg.arrivals, [](const Arrival& path) {
       return path.surface_bounces + path.bottom_bounces == 0;
@@ -146,8 +168,8 @@ DirectBlast direct_blast(const EchoContext& context) {
     receive_at_phones(blast);
     return blast;
   }
-  receive(context, -1, blast);
-  if (context.listens && !plane_waves(context, blast)) {
+  const Vec3 place = receive(context, -1, blast);
+  if (context.listens && !plane_waves(context, blast, place)) {
     DirectBlast at_phones;
     receive_at_phones(at_phones);
     blast.received = std::move(at_phones.received);

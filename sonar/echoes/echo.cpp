@@ -13,7 +13,9 @@
 #include "core/propagation_memory.h"
 #include "raytrace/parallel/stop.h"
 #include "reverb/scattering/forward_scatter.h"
+#include "sonar/echoes/leg_response.h"
 #include "sonar/echoes/one_leg.h"
+#include "sonar/echoes/outer_phones.h"
 #include "sonar/echoes/target_response.h"
 #include "sonar/paths/moving_paths.h"
 #include "sonar/paths/plane_wave.h"
@@ -81,7 +83,8 @@ class EchoFinder {
     }
     if (many) {
       shorten_bounces(result.legs.front().arrivals);
-    } else if (!exact && context_.listens && !plane_waves(result)) {
+    } else if (!exact && context_.listens &&
+               !(plane_waves(result) && alike_at_phones(out, result.legs.back(), home.end))) {
       TargetEchoes at_phones;
       for (std::size_t n = 0; n < phones_.size(); ++n)
         pair_up(source, out, way_back(out, static_cast<int>(n)), at_phones);
@@ -117,15 +120,26 @@ class EchoFinder {
     });
   }
 
+  /// \param home  at the reference point, there at a place
+  [[nodiscard]] bool alike_at_phones(const Way& out, const Leg& home, const Kinematics& end) const {
+    return is_alike_at_phones(context_, {home, end.position}, [&](int phone) -> ArrivedLeg {
+      // Over slopes rays are followed there; the amplitude of waves is to be found.
+      Way own = way_back(out, phone, layered_ ? std::span<const Arrival>() : home.arrivals);
+      return {std::move(own.leg), own.end.position};
+    });
+  }
+
   /// \param channel  phone that receives it; −1: the reference point
   [[nodiscard]] Carried receiver(int channel) const {
     return geometry_.receiver(context_.array, channel);
   }
 
-  /// From where the first sound strikes the target.
-  [[nodiscard]] Way way_back(const Way& out, int channel) const {
+  /// From where the first sound strikes the target. \param known  paths to somewhere nearby
+  [[nodiscard]] Way way_back(const Way& out, int channel,
+                             std::span<const Arrival> known = {}) const {
     const Carried receiver = this->receiver(channel);
-    Way back = moving_.way(out.end.position, out.reference_time, receiver.track, receiver.offset);
+    Way back =
+        moving_.way(out.end.position, out.reference_time, receiver.track, receiver.offset, known);
     back.leg.kind = Leg::Kind::target_to_array;
     back.leg.target = index_;
     back.leg.channel = channel;
@@ -173,6 +187,8 @@ class EchoFinder {
     const int channel = back.leg.channel;
     const Carried receiver = this->receiver(channel);
     const std::vector<RoughPath> rough_home = rough_paths(back.leg.arrivals, 2);
+    const auto there = across_the_band(source.position, out),
+               home = across_the_band(out.end.position, back);
     for (std::size_t i = 0; i < out.leg.arrivals.size(); ++i) {
       const Strike strike = this->strike(source, out, i, back.leg.arrivals, receiver);
       for (std::size_t j = 0; j < back.leg.arrivals.size(); ++j) {
@@ -184,9 +200,27 @@ class EchoFinder {
         scatter(*pair, echoes, rough_out_[i], rough_home[j], result.scattered);
         name(i, j, std::span(result.scattered).subspan(first));
         name(i, j, echoes);
+        if (there != nullptr) {
+          const std::vector legs = {path_on_leg(there, i, source.position, pair->there),
+                                    path_on_leg(home, j, pair->target.position, pair->home)};
+          for (EchoPath& echo : echoes) echo.legs = legs;
+        }
         for (EchoPath& echo : echoes) result.echoes.push_back(std::move(echo));
       }
     }
+  }
+
+  /// The paths of a way, for other frequencies than the centre; null: nobody asks.
+  [[nodiscard]] std::shared_ptr<const MetLeg> across_the_band(const Vec3& from,
+                                                              const Way& way) const {
+    if (!context_.listens || context_.pulse == nullptr ||
+        scenario_.propagation.band == BandOfLosses::narrow)
+      return nullptr;
+    return std::make_shared<const MetLeg>(MetLeg{.from = from,
+                                                 .to = way.end.position,
+                                                 .paths = way.leg.arrivals,
+                                                 .frequency = context_.frequency,
+                                                 .limits = limits_});
   }
 
   /// By the numbers of their paths.
@@ -210,12 +244,16 @@ class EchoFinder {
     many.last = std::min(latest_, there.back().delay + home.back().delay);
     many.at_phones =
         scenario_.propagation.exact_per_phone ||
-        (context_.listens && !std::all_of(home.begin(), home.end(), [&](const Arrival& path) {
-           const Return received_there{
-               .delay = there.front().delay + path.delay,
-               .slowness = met_by(back.end.velocity, arriving_slowness(back.leg.bearing, path, c))};
-           return is_plane_wave(context_, received_there, path.path_length);
-         }));
+        (context_.listens &&
+         !std::all_of(home.begin(), home.end(),
+                      [&](const Arrival& path) {
+                        const Return received_there{
+                            .delay = there.front().delay + path.delay,
+                            .slowness = met_by(back.end.velocity,
+                                               arriving_slowness(back.leg.bearing, path, c))};
+                        return is_plane_wave(context_, received_there, path.path_length);
+                      })) ||
+        (context_.listens && !alike_at_phones(out, back.leg, back.end));
     return many;
   }
 
@@ -226,6 +264,8 @@ class EchoFinder {
     const std::size_t most =
         back.leg.channel < 0 ? most_listed : std::max<std::size_t>(1, most_listed / phones_.size());
     const Carried receiver = this->receiver(back.leg.channel);
+    const auto there = across_the_band(source.position, out),
+               home = across_the_band(out.end.position, back);
     for (const auto& [i, j] : loudest_pairs(out.leg, back.leg, most)) {
       stop_point();
       const Strike strike =
@@ -234,6 +274,8 @@ class EchoFinder {
       if (!pair) continue;
       std::vector<EchoPath> echoes = answer(*pair, receiver, back.leg.channel);
       name(i, j, echoes);
+      if (there != nullptr)
+        for (EchoPath& echo : echoes) echo.legs = {{there, i}, {home, j}};
       for (EchoPath& echo : echoes) result.echoes.push_back(std::move(echo));
     }
   }

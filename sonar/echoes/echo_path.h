@@ -1,7 +1,9 @@
 #pragma once
 #include <complex>
 #include <cstddef>
+#include <memory>
 #include <optional>
+#include <vector>
 
 #include "sonar/paths/delay_curve.h"
 #include "sonar/paths/enough_bounces.h"
@@ -9,6 +11,14 @@
 #include "sonar/signal/band_response.h"
 
 namespace asdic::detail {
+
+struct MetLeg;
+
+/// One of the paths of a leg (sonar/echoes/leg_response.h).
+struct PathOnLeg {
+  std::shared_ptr<const MetLeg> leg;
+  std::size_t path = 0;
+};
 
 /// One echo: one path out, one path back, one place of the target.
 struct EchoPath {
@@ -22,6 +32,8 @@ struct EchoPath {
   double struck = 0.0;    ///< when the leading edge meets the target, since the ping's start [s]
   Return received;        ///< at the array's reference point (or the phone)
   PathResponse response;  ///< for other frequencies than the pulse's centre
+  /// What it was carried by, each where it was met; none: the pulse's centre stands for the band.
+  std::vector<PathOnLeg> legs = {};
   std::complex<double> glint = 1.0;      ///< what the target's place makes of the pressure
   std::optional<DelayCurve> curve = {};  ///< where a constant Doppler factor is not enough
 };

@@ -3,93 +3,136 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <memory>
 #include <numbers>
+#include <optional>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "raytrace/ocean/absorption.h"
-#include "sonar/echoes/wave_response.h"
+#include "sonar/echoes/leg_response.h"
 #include "sonar/scenario/transmitter.h"
 
 namespace asdic::detail {
 namespace {
 
-/// What an echo's legs that are no rays do across the band.
-struct PathWaves {
-  double ray_length = 0.0;  ///< of the legs that are rays [m]
-  std::vector<std::shared_ptr<const SampledResponse>> legs;
+/// The legs of paths whose amplitudes change with frequency otherwise than by absorption, each
+/// once, as functions of a frequency.
+template <class Response>
+class ChangingLegs {
+ public:
+  /// \param make  the response of a leg
+  template <class Make>
+  ChangingLegs(const PropagationPaths& paths, std::span<const EchoPath> echoes, const Make& make) {
+    for (const EchoPath& echo : echoes)
+      for (const PathOnLeg& on : echo.legs)
+        if (const auto [at, is_new] = legs_.try_emplace(on.leg.get()); is_new)
+          if (changes_with_frequency(paths, *on.leg)) at->second = make(*on.leg);
+  }
 
-  [[nodiscard]] std::complex<double> at(double frequency) const {
-    std::complex<double> product = 1.0;
-    for (const auto& leg : legs) product *= leg->at(frequency);
-    return product;
+  /// Null: of absorption alone.
+  [[nodiscard]] const Response* of(const PathOnLeg& on) const {
+    const std::optional<Response>& found = legs_.at(on.leg.get());
+    return found ? &*found : nullptr;
   }
-  /// Of the polynomial that the product is.
-  [[nodiscard]] std::size_t degree() const {
-    std::size_t sum = 0;
-    for (const auto& leg : legs) sum += leg->values.size() - 1;
-    return sum;
-  }
+
+ private:
+  std::unordered_map<const MetLeg*, std::optional<Response>> legs_;
 };
 
-/// Of every path; a leg that several share is computed once. \return [paths]
-std::vector<PathWaves> waves_of(const EchoContext& context, std::span<const EchoPath> paths,
-                                std::span<const Leg> legs, double centre, double half_band) {
-  std::vector<std::pair<ExactKey, std::shared_ptr<const SampledResponse>>> known;
-  std::vector<PathWaves> all;
-  for (const EchoPath& path : paths) {
-    PathWaves& waves =
-        all.emplace_back(PathWaves{.ray_length = path.response.path_length, .legs = {}});
-    for (const WaveLeg& leg : wave_legs(context, path, legs)) {
-      waves.ray_length -= leg.path.path_length;
-      ExactKey key = context.paths.key(Kept::legs, leg.from, leg.to, leg.limits, leg.path.delay);
-      add_path(key, leg.path);
-      auto found = std::find_if(known.begin(), known.end(),
-                                [&](const auto& one) { return one.first == key; });
-      if (found == known.end())
-        found = known.insert(known.end(),
-                             {std::move(key), std::make_shared<SampledResponse>(wave_response(
-                                                  context.paths, leg, centre, half_band))});
-      waves.legs.push_back(found->second);
-    }
+/// What a path's amplitude is at another frequency, over that at the centre. \param at_frequency
+/// amplitudes of each leg's paths
+std::complex<double> response_of(const EchoPath& path, const BandPart& part,
+                                 std::span<const std::span<const std::complex<double>>> legs) {
+  double by_rays = path.response.path_length;  // [m]
+  std::complex<double> product = 1.0;
+  for (std::size_t i = 0; i < path.legs.size(); ++i) {
+    if (legs[i].empty()) continue;
+    const Arrival& at_centre = path.legs[i].leg->paths[path.legs[i].path];
+    if (path.legs[i].leg->by_waves()) by_rays -= at_centre.path_length;
+    product *= at_centre.amplitude == 0.0 ? 0.0 : legs[i][path.legs[i].path] / at_centre.amplitude;
   }
-  return all;
+  return product * std::exp(-part.more_nepers_per_metre * by_rays);
 }
+
+double nepers_per_metre(const EchoContext& context, double frequency) {
+  const Absorption& water = context.paths.along_transect().environment().absorption;
+  return absorption_db_per_km(water, frequency) / 1000.0 * std::numbers::ln10 / 20.0;
+}
+
+BeamPattern pattern_at(const EchoContext& context, const Transmitter& projector, double frequency) {
+  const double c = context.paths.speed_at(context.geometry.source().position);
+  return {projector, c / frequency, c, context.geometry.source_heading(), c / context.frequency};
+}
+
+BandPart band_part(const EchoContext& context, const Transmitter& projector, double frequency) {
+  return {.frequency = frequency,
+          .filter = {},
+          .pattern = pattern_at(context, projector, frequency),
+          .more_nepers_per_metre =
+              nepers_per_metre(context, frequency) - nepers_per_metre(context, context.frequency)};
+}
+
+/// A pulse's band and the few frequencies that serve it, for paths. docs/theory/synthesis.md,
+/// "Across the band"
+class WideBand {
+ public:
+  /// \param longest  path there and back [m]
+  WideBand(const EchoContext& context, const Transmitter& projector,
+           std::span<const EchoPath> paths, double longest, const Recording& recording,
+           double max_doppler)
+      : context_(context),
+        projector_(projector),
+        centre_(context.pulse->centre_frequency()),
+        half_width_(Synthesizer(*context.pulse, recording, max_doppler, context.paths.memory())
+                        .half_band()),
+        legs_(context.paths, paths, [&](const MetLeg& leg) {
+          return leg_response(context.paths, leg, centre_, half_width_);
+        }) {
+    // What absorption and the transmitter's pattern need, and the degree of what legs do.
+    const double nepers = 0.5 * longest *
+                          std::abs(nepers_per_metre(context, centre_ + half_width_) -
+                                   nepers_per_metre(context, std::max(1.0, centre_ - half_width_)));
+    nodes_ = band_nodes(centre_, half_width_, nepers,
+                        pattern_at(context, projector, centre_).longest_delay());
+    std::size_t degree = 0;
+    for (const EchoPath& path : paths) {
+      std::size_t sum = 0;
+      for (const PathOnLeg& on : path.legs)
+        if (const SampledResponse* leg = legs_.of(on)) sum += leg->values.size() - 1;
+      degree = std::max(degree, sum);
+    }
+    if (degree > 0)
+      nodes_ = chebyshev_nodes(centre_, half_width_, nodes_.frequencies.size() + degree);
+  }
+
+  [[nodiscard]] const BandNodes& nodes() const noexcept { return nodes_; }
+  [[nodiscard]] const ChangingLegs<SampledResponse>& legs() const noexcept { return legs_; }
+  [[nodiscard]] BandPart part(std::size_t k) const {
+    BandPart part = band_part(context_, projector_, std::max(1.0, nodes_.frequencies[k]));
+    part.filter = [nodes = nodes_, k, centre = centre_](double beside) {
+      return nodes.basis(k, centre + beside);
+    };
+    return part;
+  }
+
+ private:
+  const EchoContext& context_;
+  const Transmitter& projector_;
+  double centre_, half_width_;
+  ChangingLegs<SampledResponse> legs_;
+  BandNodes nodes_;
+};
 
 }  // namespace
 
-PulseBand::PulseBand(const EchoContext& context, const Transmitter& projector,
-                     const Recording& recording, double max_doppler)
-    : water_(context.paths.along_transect().environment().absorption),
-      projector_(projector),
-      centre_(context.pulse->centre_frequency()),
-      half_band_(
-          Synthesizer(*context.pulse, recording, max_doppler, context.paths.memory()).half_band()),
-      sound_speed_(context.paths.speed_at(context.geometry.source().position)),
-      heading_(context.geometry.source_heading()) {}
-
-double PulseBand::nepers_per_metre(double frequency) const {
-  return absorption_db_per_km(water_, frequency) / 1000.0 * std::numbers::ln10 / 20.0;
-}
-
-BeamPattern PulseBand::pattern_at(double frequency) const {
-  return {projector_, sound_speed_ / frequency, sound_speed_, heading_, sound_speed_ / centre_};
-}
-
-BandNodes PulseBand::nodes(double longest) const {
-  const double lowest = std::max(1.0, centre_ - half_band_);
-  const double nepers =
-      0.5 * longest * std::abs(nepers_per_metre(centre_ + half_band_) - nepers_per_metre(lowest));
-  return band_nodes(centre_, half_band_, nepers, pattern_at(centre_).longest_delay());
-}
-
-BandPart PulseBand::part(const BandNodes& nodes, std::size_t k) const {
-  const double f = std::max(1.0, nodes.frequencies[k]);
-  return {.filter = [nodes, k,
-                     centre = centre_](double beside) { return nodes.basis(k, centre + beside); },
-          .pattern = pattern_at(f),
-          .more_nepers_per_metre = nepers_per_metre(f) - nepers_per_metre(centre_)};
+std::vector<BandPart> band_parts(const EchoContext& context, const Transmitter& projector,
+                                 std::span<const EchoPath> paths, double longest,
+                                 const Recording& recording, double max_doppler) {
+  const WideBand band(context, projector, paths, longest, recording, max_doppler);
+  std::vector<BandPart> parts;
+  for (std::size_t k = 0; k < band.nodes().frequencies.size(); ++k) parts.push_back(band.part(k));
+  return parts;
 }
 
 Baseband narrow_band_sound(const Synthesizer& synthesizer, std::span<const EchoPath> paths,
@@ -108,35 +151,88 @@ Baseband narrow_band_sound(const Synthesizer& synthesizer, std::span<const EchoP
   return sound;
 }
 
-Baseband wide_band_sound(const EchoContext& context, const Transmitter& projector,
-                         std::span<const EchoPath> paths, std::span<const Leg> legs,
-                         std::span<const Vec3> phones, const Recording& recording,
-                         double max_doppler) {
-  const Pulse& pulse = *context.pulse;
-  const PulseBand of_pulse(context, projector, recording, max_doppler);
-  const double centre = of_pulse.centre(), half_band = of_pulse.half_width();
+double change_across_band(const EchoContext& context, const Transmitter& projector,
+                          std::span<const EchoPath> paths, double half_width) {
+  using Amplitudes = std::vector<std::complex<double>>;
+  double most = 0.0;
+  for (const double f : {context.frequency - half_width, context.frequency + half_width}) {
+    const BandPart at = band_part(context, projector, f);
+    const ChangingLegs<Amplitudes> legs(context.paths, paths, [&](const MetLeg& leg) {
+      const bool still = leg.by_waves() && too_narrow_to_change(leg, half_width, tolerable_change);
+      return still ? Amplitudes() : amplitudes_at(context.paths, leg, f);
+    });
+    double energy = 0.0, changed = 0.0;
+    std::vector<std::span<const std::complex<double>>> of_path;
+    for (const EchoPath& path : paths) {
+      of_path.clear();
+      for (const PathOnLeg& on : path.legs) {
+        const Amplitudes* found = legs.of(on);
+        of_path.push_back(found != nullptr ? std::span(*found)
+                                           : std::span<const std::complex<double>>());
+      }
+      const std::complex<double> there =
+          path.response.without_pattern *
+          at.pattern.towards(path.response.bearing, path.response.elevation) *
+          response_of(path, at, of_path);
+      energy += std::norm(path.received.amplitude);
+      changed += std::norm(there - path.received.amplitude);
+    }
+    if (energy > 0.0) most = std::max(most, std::sqrt(changed / energy));
+  }
+  return most;
+}
+
+bool across_the_band(const EchoContext& context, const Transmitter& projector,
+                     std::span<const EchoPath> paths) {
+  const BandOfLosses band = context.scenario().propagation.band;
+  if (band != BandOfLosses::automatic) return band == BandOfLosses::wide;
+  return change_across_band(context, projector, paths, 0.5 * context.pulse->bandwidth_99()) >
+         tolerable_change;
+}
+
+std::vector<SoundOfBand> across_band(const EchoContext& context, const Transmitter& projector,
+                                     std::span<const EchoPath> paths, const Recording& recording,
+                                     double max_doppler) {
   double longest = 0.0;
   for (const EchoPath& path : paths) longest = std::max(longest, path.response.path_length);
-  BandNodes band = of_pulse.nodes(longest);
-  const std::vector<PathWaves> waves = waves_of(context, paths, legs, centre, half_band);
-  std::size_t of_waves = 0;
-  for (const PathWaves& path : waves) of_waves = std::max(of_waves, path.degree());
-  if (of_waves > 0) band = chebyshev_nodes(centre, half_band, band.frequencies.size() + of_waves);
+  const WideBand band(context, projector, paths, longest, recording, max_doppler);
+  std::vector<SoundOfBand> all;
+  for (std::size_t k = 0; k < band.nodes().frequencies.size(); ++k) {
+    SoundOfBand& sound = all.emplace_back(SoundOfBand{band.part(k), {}});
+    std::unordered_map<const SampledResponse*, std::vector<std::complex<double>>> known;
+    std::vector<std::span<const std::complex<double>>> of_path;
+    for (const EchoPath& path : paths) {
+      of_path.clear();
+      for (const PathOnLeg& on : path.legs) {
+        const SampledResponse* leg = band.legs().of(on);
+        if (leg == nullptr) {
+          of_path.emplace_back();
+          continue;
+        }
+        const auto [found, is_new] = known.try_emplace(leg);
+        if (is_new) found->second = leg->at(sound.part.frequency);
+        of_path.emplace_back(found->second);
+      }
+      sound.amplitudes.push_back(
+          path.response.without_pattern *
+          sound.part.pattern.towards(path.response.bearing, path.response.elevation) *
+          response_of(path, sound.part, of_path));
+    }
+  }
+  return all;
+}
 
+Baseband wide_band_sound(const EchoContext& context, const Transmitter& projector,
+                         std::span<const EchoPath> paths, std::span<const Vec3> phones,
+                         const Recording& recording, double max_doppler) {
   Baseband all;
   std::vector<EchoPath> filtered(paths.begin(), paths.end());
-  for (std::size_t k = 0; k < band.frequencies.size(); ++k) {
-    const double f = std::max(1.0, band.frequencies[k]);
-    const BandPart at = of_pulse.part(band, k);
-    for (std::size_t i = 0; i < filtered.size(); ++i) {
-      const PathResponse& response = filtered[i].response;
-      filtered[i].received.amplitude =
-          response.without_pattern * at.pattern.towards(response.bearing, response.elevation) *
-          std::exp(-at.more_nepers_per_metre * waves[i].ray_length) * waves[i].at(f);
-    }
-    Baseband sound =
-        narrow_band_sound(Synthesizer(pulse, recording, max_doppler, at.filter), filtered, phones);
-    if (k == 0)
+  for (const SoundOfBand& one : across_band(context, projector, paths, recording, max_doppler)) {
+    for (std::size_t i = 0; i < filtered.size(); ++i)
+      filtered[i].received.amplitude = one.amplitudes[i];
+    Baseband sound = narrow_band_sound(
+        Synthesizer(*context.pulse, recording, max_doppler, one.part.filter), filtered, phones);
+    if (all.channels == 0)
       all = std::move(sound);
     else
       std::transform(sound.values.begin(), sound.values.end(), all.values.begin(),

@@ -1,6 +1,8 @@
 #pragma once
+#include <complex>
 #include <functional>
 #include <span>
+#include <vector>
 
 #include "sonar/echoes/echo.h"
 #include "sonar/scenario/transmitter.h"
@@ -10,33 +12,35 @@ namespace asdic::detail {
 
 /// One of the frequencies that serve a pulse's band.
 struct BandPart {
+  double frequency = 0.0;                ///< [Hz]
   std::function<double(double)> filter;  ///< of the pulse, over the frequency from its centre [Hz]
   BeamPattern pattern;                   ///< of the transmitter at that frequency
   double more_nepers_per_metre = 0.0;    ///< of absorption than at the centre
 };
 
-/// A pulse's band and the few frequencies that serve it. docs/theory/synthesis.md, "Across the
-/// band"
-class PulseBand {
- public:
-  /// \param projector  as it pings
-  PulseBand(const EchoContext& context, const Transmitter& projector, const Recording& recording,
-            double max_doppler);
+/// What a change across the band has to be to matter, of an echo's pressure at the edges of the
+/// pulse's band (99 % of its energy): 0.5 dB. Over all of the band it is half of that, and the
+/// waveform is the same to −30 dB.
+inline constexpr double tolerable_change = 0.06;
 
-  [[nodiscard]] double centre() const noexcept { return centre_; }
-  [[nodiscard]] double half_width() const noexcept { return half_band_; }
-  /// What absorption and the transmitter's pattern need. \param longest  path there and back [m]
-  [[nodiscard]] BandNodes nodes(double longest) const;
-  [[nodiscard]] BandPart part(const BandNodes& nodes, std::size_t k) const;
+/// Root of the energy of what paths carry at either edge of a band beside what they carry at the
+/// centre, over that of what they carry there; the greater one. Where waves cannot change by
+/// `tolerable_change` they are not looked at. \param half_width  of the band about the pulse's
+/// centre [Hz]
+[[nodiscard]] double change_across_band(const EchoContext& context, const Transmitter& projector,
+                                        std::span<const EchoPath> paths, double half_width);
 
- private:
-  [[nodiscard]] double nepers_per_metre(double frequency) const;
-  [[nodiscard]] BeamPattern pattern_at(double frequency) const;
+/// Whether paths are to be received by wide_band_sound(): by the settings, "auto" where the change
+/// across the pulse's band is more than tolerable.
+[[nodiscard]] bool across_the_band(const EchoContext& context, const Transmitter& projector,
+                                   std::span<const EchoPath> paths);
 
-  const Absorption& water_;
-  const Transmitter& projector_;
-  double centre_, half_band_, sound_speed_, heading_;
-};
+/// The parts of a pulse's band by which echoes of paths like these are received. \param longest
+/// path there and back [m]
+[[nodiscard]] std::vector<BandPart> band_parts(const EchoContext& context,
+                                               const Transmitter& projector,
+                                               std::span<const EchoPath> paths, double longest,
+                                               const Recording& recording, double max_doppler);
 
 /// Echoes and direct blasts at the phones of an array, amplitudes as at the pulse's centre
 /// frequency. \param phones  [n] from the array's reference point [m]
@@ -44,13 +48,25 @@ class PulseBand {
                                          std::span<const EchoPath> paths,
                                          std::span<const Vec3> phones);
 
-/// The same with the water's absorption and the transmitter's pattern at every frequency of the
-/// pulse: K pulses, each passed through one of Lagrange's polynomials over the band, each with the
-/// amplitudes of its own frequency. K times the cost. Source: docs/theory/synthesis.md, "Across the
-/// band". Legs that are no rays have the amplitude of waves at up to `most_wave_frequencies`.
-/// \param projector  as it pings   \param legs  that the paths belong to
+/// Paths at one of the frequencies that serve a pulse's band.
+struct SoundOfBand {
+  BandPart part;
+  std::vector<std::complex<double>> amplitudes;  ///< [paths]
+};
+
+/// Amplitudes of paths with the water's absorption, the transmitter's pattern, the boundaries'
+/// reflection and waves at every frequency that the band needs. \param projector  as it pings
+[[nodiscard]] std::vector<SoundOfBand> across_band(const EchoContext& context,
+                                                   const Transmitter& projector,
+                                                   std::span<const EchoPath> paths,
+                                                   const Recording& recording, double max_doppler);
+
+/// The same with the water's absorption, the transmitter's pattern, the boundaries' reflection and
+/// the amplitudes of waves at every frequency of the pulse: K pulses, each passed through one of
+/// Lagrange's polynomials over the band, each with the amplitudes of its own frequency. K times the
+/// cost. Source: docs/theory/synthesis.md, "Across the band". \param projector  as it pings
 [[nodiscard]] Baseband wide_band_sound(const EchoContext& context, const Transmitter& projector,
-                                       std::span<const EchoPath> paths, std::span<const Leg> legs,
+                                       std::span<const EchoPath> paths,
                                        std::span<const Vec3> phones, const Recording& recording,
                                        double max_doppler);
 

@@ -162,8 +162,9 @@ class MovingLeg {
 
 class TwoSteps {
  public:
+  /// \param part  of the band; null: the pulse's centre stands for it
   TwoSteps(const EchoContext& context, const ManyEchoes& many, const TwoStepReceivers& receivers,
-           const Recording& recording, double max_doppler)
+           const Recording& recording, double max_doppler, const BandPart* part)
       : context_(context),
         geometry_(context.geometry),
         scenario_(context.scenario()),
@@ -173,23 +174,24 @@ class TwoSteps {
         recording_(recording),
         max_doppler_(max_doppler),
         latest_(end_of_record(scenario_)),
-        moving_(context.paths, limits_of(scenario_.propagation, many.followed), context.frequency,
-                geometry_.time(), 1e-7, context.reuse),
+        part_(part),
+        moving_(context.paths, limits_of(scenario_.propagation, many.followed),
+                part != nullptr ? part->frequency : context.frequency, geometry_.time(), 1e-7,
+                context.reuse),
         places_(target_.highlights.empty() ? 1 : target_.highlights.size()) {}
 
-  /// \param part  of the band; null: the pulse's centre stands for it
-  Baseband receive(const BandPart* part) {
+  Baseband receive() const {
     const Synthesizer whole(*context_.pulse, recording_, max_doppler_,
-                            part != nullptr ? part->filter : std::function<double(double)>());
+                            part_ != nullptr ? part_->filter : std::function<double(double)>());
     const Sound pulse{.wave = filtered_pulse(whole), .middle = 0.5 * context_.pulse->duration()};
-    const std::vector<Sound> struck = at_target(pulse, part);
+    const std::vector<Sound> struck = at_target(pulse);
     Baseband received;
     if (struck.empty()) return received;
     if (!receivers_.by_themselves) {
-      add(struck, -1, part, received);
+      add(struck, -1, received);
     } else {
       for (std::size_t n = 0; n < receivers_.phones.size(); ++n)
-        add(struck, static_cast<int>(n), part, received);
+        add(struck, static_cast<int>(n), received);
     }
     return received;
   }
@@ -274,7 +276,7 @@ class TwoSteps {
 
   /// The sound that strikes the target's places. \return [places] alike but for what they are;
   /// none: nothing strikes it in time
-  std::vector<Sound> at_target(const Sound& pulse, const BandPart* part) const {
+  std::vector<Sound> at_target(const Sound& pulse) const {
     MovingLeg leg(
         context_, moving_, [&](double since) { return geometry_.source_at(since); },
         {.track = target_.track},
@@ -295,7 +297,7 @@ class TwoSteps {
                      for (const LegPath& path : leg.at(moment)) {
                        Return r = leaving_at(path, middle, moment);
                        if (r.delay > latest_) continue;
-                       r.amplitude = amplitude(path.received, part, true);
+                       r.amplitude = amplitude(path.received, true);
                        first = std::min(first, r.delay);
                        last = std::max(last, r.delay);
                        for (std::size_t p = 0; p < places_; ++p) {
@@ -351,8 +353,7 @@ class TwoSteps {
 
   /// Adds what is received of the sounds at the target. \param channel  phone that receives paths
   /// of its own; −1: all about the reference point
-  void add(const std::vector<Sound>& struck, int channel, const BandPart* part,
-           Baseband& received) {
+  void add(const std::vector<Sound>& struck, int channel, Baseband& received) const {
     const int array = context_.array;
     const Carried receiver = geometry_.receiver(array, channel);
     MovingLeg leg(
@@ -376,8 +377,7 @@ class TwoSteps {
             for (const LegPath& path : paths) {
               Return r = leaving_at(path, middle, moment);
               r.delay += path.lag.dot(glint.offset) - r.slowness.dot(x);
-              r.amplitude =
-                  amplitude(path.received, part, false) * glint.amplitude * struck[place].scale;
+              r.amplitude = amplitude(path.received, false) * glint.amplitude * struck[place].scale;
               r.channel = channel < 0 ? Return::all_channels : channel;
               returns.push_back(r);
             }
@@ -395,12 +395,12 @@ class TwoSteps {
                   slowness_vector(home, 0.0, 1.0), geometry_.time() + since);
   }
 
-  static std::complex<double> amplitude(const EchoPath& path, const BandPart* part, bool sent) {
-    if (part == nullptr) return sent ? path.received.amplitude : path.response.without_pattern;
+  /// \param sent  by the transmitter
+  [[nodiscard]] std::complex<double> amplitude(const EchoPath& path, bool sent) const {
+    if (!sent) return path.response.without_pattern;
+    if (part_ == nullptr) return path.received.amplitude;
     const PathResponse& response = path.response;
-    const std::complex<double> alone =
-        response.without_pattern * std::exp(-part->more_nepers_per_metre * response.path_length);
-    return sent ? alone * part->pattern.towards(response.bearing, response.elevation) : alone;
+    return response.without_pattern * part_->pattern.towards(response.bearing, response.elevation);
   }
 
   const EchoContext& context_;
@@ -411,9 +411,10 @@ class TwoSteps {
   TwoStepReceivers receivers_;
   Recording recording_;
   double max_doppler_;
-  double latest_;  // end of the record [s]
-  MovingPaths moving_;
-  std::size_t places_;  // of the target: its highlights, or itself
+  double latest_;         // end of the record [s]
+  const BandPart* part_;  // null: the pulse's centre stands for the band
+  MovingPaths moving_;    // at the part's frequency
+  std::size_t places_;    // of the target: its highlights, or itself
 };
 
 }  // namespace
@@ -421,21 +422,23 @@ class TwoSteps {
 Baseband two_step_echo(const EchoContext& context, const ManyEchoes& many,
                        const TwoStepReceivers& receivers, const Recording& recording,
                        double max_doppler, std::span<const BandPart> band) {
-  TwoSteps steps(context, many, receivers, recording, max_doppler);
-  if (band.empty()) return steps.receive(nullptr);
+  const auto receive = [&](const BandPart* part) {
+    return TwoSteps(context, many, receivers, recording, max_doppler, part).receive();
+  };
+  if (band.empty()) return receive(nullptr);
   Baseband all;
-  for (const BandPart& part : band) add_to(all, steps.receive(&part));
+  for (const BandPart& part : band) add_to(all, receive(&part));
   return all;
 }
 
 double two_step_peak(const EchoContext& context, const ManyEchoes& many, const Recording& recording,
-                     double max_doppler) {
+                     double max_doppler, std::span<const BandPart> band) {
   const std::vector<Vec3> one = {Vec3::Zero()};
   const bool phone = context.scenario().propagation.exact_per_phone;
   std::vector<Vec3> received_at = one;
   if (phone) received_at[0] = context.geometry.phones(context.array).front();
   const Baseband received =
-      two_step_echo(context, many, {received_at, phone}, recording, max_doppler);
+      two_step_echo(context, many, {received_at, phone}, recording, max_doppler, band);
   return received.channels > 0 ? largest_envelope(received, 0) : 0.0;
 }
 

@@ -74,7 +74,7 @@ Interference::Interference(const Scenario& scenario, const PropagationPaths& pat
   double fastest_platform = 0.0;
   for (const Platform& p : scenario.platforms)
     fastest_platform = std::max(fastest_platform, fastest(p.track));
-  if (scenario.propagation.wide_band && !scenario.interferers.empty()) {
+  if (scenario.propagation.band == BandOfLosses::wide && !scenario.interferers.empty()) {
     const double high = source_carrier_ + 0.25 * source_rate_;
     band_ = frequencies_of_losses(
         scenario.environment, std::max(source_carrier_ - 0.25 * source_rate_, 0.01 * high), high);

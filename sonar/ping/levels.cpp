@@ -3,15 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "sonar/noise/noise_spectrum.h"
+#include "sonar/scenario/sampling.h"
 
 namespace asdic::detail {
 
-LevelMeter::LevelMeter(const Recording& recording) {
+LevelMeter::LevelMeter(const Recording& recording, double pulse_duration)
+    : start_(recording.start) {
   const double duration = static_cast<double>(recording.samples) / recording.sample_rate;
-  // 50 ms, and not more than 20 000 steps.
-  series_.time_step = std::max(0.05, duration / 20000.0);
+  series_.time_step = std::max(std::min(pulse_duration, 0.05), duration / 20000.0);
   const auto steps = std::max<std::size_t>(
       1, static_cast<std::size_t>(std::ceil(duration / series_.time_step - 1e-9)));
   for (auto* part : {&series_.echo, &series_.reverberation, &series_.noise})
@@ -22,9 +24,17 @@ void LevelMeter::add_noise(double variance) {
   for (float& value : series_.noise) value += static_cast<float>(variance);
 }
 
-void LevelMeter::add(const Baseband& received, double peak_pressure,
-                     std::vector<float>& into) const {
+void LevelMeter::add_reverberation(const PingReverberation& sea, double peak_pressure,
+                                   double share) {
+  std::vector<float>& into = series_.reverberation;
+  const std::vector<double> power = sea.mean_power(start_, series_.time_step, into.size());
+  for (std::size_t i = 0; i < into.size(); ++i)
+    into[i] += static_cast<float>(0.5 * share * peak_pressure * peak_pressure * power[i]);
+}
+
+void LevelMeter::add_echo(const Baseband& received, double peak_pressure) {
   if (received.channels == 0) return;
+  std::vector<float>& into = series_.echo;
   const auto step_of = [&](std::size_t i) {
     return std::min(into.size() - 1,
                     static_cast<std::size_t>(static_cast<double>(i) / received.sample_rate /
@@ -63,39 +73,8 @@ void LevelMeter::add(const Baseband& received, double peak_pressure,
   }
 }
 
-namespace {
-
-/// Largest envelope of the echoes of one target as they add at the reference point (of the first
-/// phone, where every phone has its own), over √2. They may cancel: the direct path and its surface
-/// reflection are a period apart or less.
-double peak_of_sum_db(const std::vector<const EchoPath*>& echoes, const Pulse& pulse,
-                      double source_level_db) {
-  double first = infinity, last = -infinity, slowest = 1.0;
-  for (const EchoPath* echo : echoes) {
-    first = std::min(first, echo->received.delay);
-    last = std::max(last, echo->received.delay);
-    slowest = std::min(slowest, echo->received.doppler);
-  }
-  last += pulse.duration() / slowest;
-  const auto steps =
-      static_cast<int>(std::clamp((last - first) * 4.0 * pulse.bandwidth_40db(), 16.0, 4000.0));
-  double peak = 0.0;
-  for (int i = 0; i <= steps; ++i) {
-    const double t = first + (last - first) * i / steps;
-    std::complex<double> sum = 0.0;
-    for (const EchoPath* echo : echoes)
-      sum += echo->received.amplitude *
-             pulse.analytic(echo->received.doppler * (t - echo->received.delay));
-    peak = std::max(peak, std::abs(sum));
-  }
-  return source_level_db + db_from_amplitude(peak);
-}
-
-}  // namespace
-
-std::vector<TargetSummary> summarise(
-    const PingRecord& record, const Scenario& scenario, const Pulse& pulse,
-    const std::function<double(int array, double time)>& reverberation_db) {
+std::vector<TargetSummary> summarise(const PingRecord& record, const Scenario& scenario,
+                                     const Pulse& pulse, const SummaryParts& parts) {
   std::vector<TargetSummary> summary;
   const double source_level_db =
       scenario.transmitters[static_cast<std::size_t>(record.transmitter)].source_level_db;
@@ -115,17 +94,17 @@ std::vector<TargetSummary> summarise(
     row.noise_db = noise_band_db(scenario.noise, pulse.centre_frequency(), pulse.bandwidth_40db());
     if (strongest != nullptr) {
       row.array = strongest->array;
-      std::vector<const EchoPath*> received;
+      std::vector<EchoPath> received;
       for (const EchoPath& echo : record.echoes) {
         if (echo.target != static_cast<int>(i) || echo.array != row.array) continue;
         ++row.paths;
         if (echo.received.channel == Return::all_channels || echo.received.channel == 0)
-          received.push_back(&echo);
+          received.push_back(echo);
       }
       for (const EchoPath& part : record.scattered)
         if (part.target == static_cast<int>(i) && part.array == row.array &&
             (part.received.channel == Return::all_channels || part.received.channel == 0))
-          received.push_back(&part);
+          received.push_back(part);
       const auto many = std::find_if(
           record.many_echoes.begin(), record.many_echoes.end(), [&](const ManyEchoes& one) {
             return one.target == static_cast<int>(i) && one.array == row.array;
@@ -134,17 +113,36 @@ std::vector<TargetSummary> summarise(
       if (!listed) row.paths = static_cast<int>(std::min<std::size_t>(many->pairs, 1'000'000'000));
       row.echo_time = strongest->received.delay;
       row.echo_level_db = strongest->level_db;
-      row.reverberation_db =
-          reverberation_db(row.array, strongest->received.delay +
-                                          0.5 * pulse.duration() / strongest->received.doppler);
-      row.echo_peak_db = listed ? peak_of_sum_db(received, pulse, source_level_db)
-                                : source_level_db + db_from_amplitude(many->peak);
+      row.reverberation_db = parts.reverberation_db(
+          row.array,
+          strongest->received.delay + 0.5 * pulse.duration() / strongest->received.doppler);
+      row.echo_peak_db = source_level_db +
+                         db_from_amplitude(listed ? parts.peak(row.array, received) : many->peak);
       row.signal_excess_db = row.echo_peak_db - db_from_power(power_from_db(row.reverberation_db) +
                                                               power_from_db(row.noise_db));
     }
     summary.push_back(row);
   }
   return summary;
+}
+
+std::string echo_beside_record(const PingRecord& record, const Scenario& scenario,
+                               const Pulse& pulse) {
+  if (scenario.pings.continuous) return "";
+  const double begin = scenario.pings.recording_start, end = end_of_record(scenario);
+  for (const TargetSummary& target : record.summary) {
+    if (target.paths == 0) continue;
+    const double last = target.echo_time + pulse.duration();
+    if (target.echo_time >= begin && last <= end) continue;
+    char text[256];
+    std::snprintf(
+        text, sizeof text,
+        "pings.recording_duration: the loudest echo of target %s is received from %.5g to "
+        "%.5g s after ping %d, whose record holds %g to %g s",
+        target.name.c_str(), target.echo_time, last, record.ping, begin, end);
+    return text;
+  }
+  return "";
 }
 
 }  // namespace asdic::detail

@@ -1,41 +1,54 @@
 #pragma once
 #include <functional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "sonar/ping/ping_record.h"
+#include "sonar/reverberation/ping_reverberation.h"
 #include "sonar/scenario/scenario.h"
 #include "sonar/signal/pulse.h"
 #include "sonar/synthesis/synthesis.h"
 
 namespace asdic::detail {
 
-/// Mean-square pressure over all phones in steps of time, the parts of the sound resolved.
+/// Mean-square pressure over all phones in steps of time, the parts of the sound resolved: echoes
+/// as they are received, reverberation and noise in the mean.
 class LevelMeter {
  public:
-  explicit LevelMeter(const Recording& recording);
+  /// \param pulse_duration  the steps' length, at most 50 ms and at least a 20 000th of the record
+  LevelMeter(const Recording& recording, double pulse_duration);
 
   /// \param peak_pressure  of the source at 1 m [Pa], the unit of the baseband
-  void add_echo(const Baseband& received, double peak_pressure) {
-    add(received, peak_pressure, series_.echo);
-  }
-  void add_reverberation(const Baseband& received, double peak_pressure) {
-    add(received, peak_pressure, series_.reverberation);
-  }
+  void add_echo(const Baseband& received, double peak_pressure);
+  /// \param share  of all phones that receive it
+  void add_reverberation(const PingReverberation& sea, double peak_pressure, double share);
   void add_noise(double variance);  ///< of every sample [Pa²]
 
   [[nodiscard]] LevelSeries series() const { return series_; }
 
  private:
-  void add(const Baseband& received, double peak_pressure, std::vector<float>& into) const;
-
+  double start_;  // of the record [s]
   LevelSeries series_;
 };
 
+/// What summarise() asks for.
+struct SummaryParts {
+  /// Largest envelope of echoes as they add at an array, over the pulse's peak at 1 m.
+  std::function<double(int array, std::span<const EchoPath> echoes)> peak;
+  /// Expected level at an array at a time [dB re 1 µPa].
+  std::function<double(int array, double time)> reverberation_db;
+};
+
 /// What a ping's echoes come to, one per target: the strongest path pair, at the array that
-/// receives it, against reverberation and noise at its time. \param reverberation_db  expected
-/// level at an array at a time [dB re 1 µPa]
-[[nodiscard]] std::vector<TargetSummary> summarise(
-    const PingRecord& record, const Scenario& scenario, const Pulse& pulse,
-    const std::function<double(int array, double time)>& reverberation_db);
+/// receives it, against reverberation and noise at its time.
+[[nodiscard]] std::vector<TargetSummary> summarise(const PingRecord& record,
+                                                   const Scenario& scenario, const Pulse& pulse,
+                                                   const SummaryParts& parts);
+
+/// Which echo of a ping its record does not hold whole, as a warning; empty: none. \param pulse
+/// that was sent
+[[nodiscard]] std::string echo_beside_record(const PingRecord& record, const Scenario& scenario,
+                                             const Pulse& pulse);
 
 }  // namespace asdic::detail

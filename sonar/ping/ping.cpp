@@ -15,6 +15,7 @@
 #include "reverb/power/reverberation_streams.h"
 #include "sonar/echoes/direct_blast.h"
 #include "sonar/echoes/echo.h"
+#include "sonar/echoes/peak_of_echoes.h"
 #include "sonar/echoes/sparse_sound.h"
 #include "sonar/echoes/two_step_echo.h"
 #include "sonar/paths/enough_bounces.h"
@@ -122,6 +123,7 @@ PingRecord PingSimulator::blank_record(const PingGeometry& geometry) const {
 
 /// Echoes, source → target × target → array, and the ping itself on its way to the array.
 std::vector<EchoPath> PingSimulator::sparse_returns(const EchoContext& context,
+                                                    const Emission& emission,
                                                     PingRecord& record) const {
   std::vector<EchoPath> received;
   for (std::size_t i = 0; i < scenario_.targets.size(); ++i) {
@@ -130,7 +132,9 @@ std::vector<EchoPath> PingSimulator::sparse_returns(const EchoContext& context,
     TargetEchoes found = target_echoes(context, static_cast<int>(i));
     record.bounces.include(found.bounces);
     if (found.many) {
-      found.many->peak = two_step_peak(context, *found.many, record.recording, max_doppler_);
+      found.many->peak =
+          two_step_peak(context, *found.many, record.recording, max_doppler_,
+                        band_of(context, emission, record, found.echoes, found.many->last));
       record.many_echoes.push_back(*found.many);
       record.echoes.insert(record.echoes.end(), found.echoes.begin(), found.echoes.end());
       found.echoes.clear();
@@ -154,20 +158,49 @@ std::vector<EchoPath> PingSimulator::sparse_returns(const EchoContext& context,
   return received;
 }
 
+std::vector<BandPart> PingSimulator::band_of(const EchoContext& context, const Emission& emission,
+                                             const PingRecord& record,
+                                             std::span<const EchoPath> loudest, double last) const {
+  if (!across_the_band(context, emission.projector, loudest)) return {};
+  return band_parts(context, emission.projector, loudest,
+                    1.1 * paths_->speed_at(record.platform.position) * last, record.recording,
+                    max_doppler_);
+}
+
+double PingSimulator::peak_of(const Emission& emission, int array, std::span<const EchoPath> echoes,
+                              PingRecord& record) const {
+  const Recording recording = recording_of(scenario_);
+  std::vector<EchoesOfBand> band;
+  const auto add = [&](std::vector<std::complex<double>> amplitudes,
+                       const std::function<double(double)>& filter) {
+    band.push_back(
+        {recorded_pulse(emission.pulse, recording, max_doppler_, filter), std::move(amplitudes)});
+  };
+  const EchoContext context = echo_context(emission, array, record);
+  if (across_the_band(context, emission.projector, echoes)) {
+    for (SoundOfBand& one :
+         across_band(context, emission.projector, echoes, recording, max_doppler_))
+      add(std::move(one.amplitudes), one.part.filter);
+  } else {
+    std::vector<std::complex<double>> amplitudes;
+    for (const EchoPath& echo : echoes) amplitudes.push_back(echo.received.amplitude);
+    add(std::move(amplitudes), {});
+  }
+  return peak_of_echoes(emission.pulse, echoes, band);
+}
+
 /// Of the targets whose pairs of paths are too many to be gridded one by one.
 void PingSimulator::add_many_echoes(const EchoContext& context, const Emission& emission,
                                     std::span<const Vec3> phones, const PingRecord& record,
                                     Baseband& received) const {
   for (const ManyEchoes& many : record.many_echoes) {
     if (many.array != context.array) continue;
-    std::vector<BandPart> band;
-    if (scenario_.propagation.wide_band) {
-      const PulseBand of_pulse(context, emission.projector, record.recording, max_doppler_);
-      const double longest = 1.1 * paths_->speed_at(record.platform.position) * many.last;
-      const BandNodes nodes = of_pulse.nodes(longest);
-      for (std::size_t k = 0; k < nodes.frequencies.size(); ++k)
-        band.push_back(of_pulse.part(nodes, k));
-    }
+    std::vector<EchoPath> loudest;
+    std::copy_if(record.echoes.begin(), record.echoes.end(), std::back_inserter(loudest),
+                 [&](const EchoPath& echo) {
+                   return echo.target == many.target && echo.array == many.array;
+                 });
+    const std::vector<BandPart> band = band_of(context, emission, record, loudest, many.last);
     const Baseband more = two_step_echo(context, many, {phones, many.at_phones}, record.recording,
                                         max_doppler_, band);
     if (more.channels > 0) add_resampled(more, received);
@@ -282,11 +315,14 @@ PingRecord PingSimulator::levels(int ping) const {
   for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
     EchoContext context = echo_context(emission, static_cast<int>(a), record);
     context.listens = false;
-    sparse_returns(context, record);
+    sparse_returns(context, emission, record);
   }
   record.timings.eigenrays = watch.lap();
   std::map<int, PingReverberation> received;  // by array, where an echo is strongest
-  record.summary = summarise(record, scenario_, emission.pulse, [&](int array, double time) {
+  const auto peak = [&](int array, std::span<const EchoPath> echoes) {
+    return peak_of(emission, array, echoes, record);
+  };
+  const auto reverberation_db = [&](int array, double time) {
     auto at = received.find(array);
     if (at == received.end()) {
       MemoryBudget budget = budget_;
@@ -297,7 +333,8 @@ PingRecord PingSimulator::levels(int ping) const {
     }
     record.bounces.include(at->second.bounces());
     return at->second.expected_db(time);
-  });
+  };
+  record.summary = summarise(record, scenario_, emission.pulse, {peak, reverberation_db});
   record.timings.rays = watch.lap();
   record.ended_searches = paths_->memory().ended_searches();
   return record;
@@ -314,8 +351,12 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
   MemoryBudget budget = budget_;
   budget.take(record_need(scenario_, most_samples()));
   std::vector<std::vector<EchoPath>> sparse;  // [arrays]
-  for (std::size_t a = 0; a < scenario_.arrays.size(); ++a)
-    sparse.push_back(sparse_returns(echo_context(emission, static_cast<int>(a), record), record));
+  std::vector<bool> wide;                     // [arrays] received across the band
+  for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
+    const EchoContext context = echo_context(emission, static_cast<int>(a), record);
+    sparse.push_back(sparse_returns(context, emission, record));
+    wide.push_back(across_the_band(context, emission.projector, sparse.back()));
+  }
   const double longest = 2.0 * emission.pulse.duration() + 1.0;  // of what a return sounds [s]
   for (std::vector<EchoPath>& of_array : sparse)
     std::erase_if(of_array, [&](const EchoPath& echo) {
@@ -331,7 +372,7 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
   const Synthesizer synthesizer(emission.pulse, record.recording, max_doppler_, paths_->memory());
   std::optional<ReverberationBand> band;
   std::optional<Synthesizer> filtered;
-  if (scenario_.propagation.wide_band && scenario_.reverberation.enabled) {
+  if (scenario_.propagation.band == BandOfLosses::wide && scenario_.reverberation.enabled) {
     band.emplace(scenario_, *paths_, reverberation_->laws(), emission.projector, record.platform,
                  geometry.source_heading(), emission.pulse.centre_frequency(),
                  synthesizer.half_band(), end_of(record.recording));
@@ -354,7 +395,7 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
   // takes back and gives again costs more than what a ping of a study puts into it.
   thread_local std::vector<std::complex<float>> used_before;
   constexpr std::size_t few = std::size_t{1} << 19;
-  LevelMeter levels(record.recording);
+  LevelMeter levels(record.recording, emission.pulse.duration());
   Baseband received, reverberated;           // of all channels
   std::vector<PingReverberation> scattered;  // [arrays]
   for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
@@ -365,10 +406,9 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
     step(0.0, "echoes");
     const std::vector<Vec3>& phones = geometry.phones(array);
     const EchoContext context = echo_context(emission, array, record);
-    Baseband of_array = scenario_.propagation.wide_band
-                            ? wide_band_sound(context, emission.projector, sparse[a], record.legs,
-                                              phones, record.recording, max_doppler_)
-                            : narrow_band_sound(synthesizer, sparse[a], phones);
+    Baseband of_array = wide[a] ? wide_band_sound(context, emission.projector, sparse[a], phones,
+                                                  record.recording, max_doppler_)
+                                : narrow_band_sound(synthesizer, sparse[a], phones);
     for (const ManyEchoes& many : record.many_echoes)
       if (many.array == array) budget.take(two_step_need(many, of_array));
     add_many_echoes(context, emission, phones, record, of_array);
@@ -393,6 +433,8 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
     record.timings.patches += watch.lap();
     step(0.5, "reverberation at the phones");
     if (scenario_.reverberation.enabled) {
+      levels.add_reverberation(scattered.back(), peak_pressure,
+                               double(phones.size()) / double(record.phones.size()));
       const Synthesizer& voice = filtered ? *filtered : synthesizer;
       const PhoneGroups groups = reverberation_groups(emission, array, whole, scattered.back());
       record.plane_waves.groups =
@@ -421,7 +463,6 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
   }
   at_step(ping, 0.9, "levels and noise");
   levels.add_echo(received, peak_pressure);
-  levels.add_reverberation(reverberated, peak_pressure);
   if (reverberated.samples == received.samples)
     std::transform(reverberated.values.begin(), reverberated.values.end(), received.values.begin(),
                    received.values.begin(), std::plus<>{});
@@ -436,9 +477,16 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
 
   levels.add_noise(noise_.recorded_power());
   record.levels = levels.series();
-  record.summary = summarise(record, scenario_, emission.pulse, [&](int array, double time) {
-    return scattered[static_cast<std::size_t>(array)].expected_db(time);
-  });
+  record.summary =
+      summarise(record, scenario_, emission.pulse,
+                {.peak =
+                     [&](int array, std::span<const EchoPath> echoes) {
+                       return peak_of(emission, array, echoes, record);
+                     },
+                 .reverberation_db =
+                     [&](int array, double time) {
+                       return scattered[static_cast<std::size_t>(array)].expected_db(time);
+                     }});
   record.timings.noise = watch.lap();
   record.ended_searches = paths_->memory().ended_searches();
   return record;
@@ -452,8 +500,8 @@ PingSimulator::MeanSea PingSimulator::mean_sea(int ping, int array) const {
     refuse("array.electronics", "receivers with a response of their own", "what is summed without");
   if (scenario_.pings.continuous || scenario_.pings.blanking)
     refuse("pings", "a stream, or blanking", "pings by themselves, to sum what they receive");
-  if (scenario_.propagation.wide_band)
-    refuse("propagation.wide_band", "true", "one amplitude for the band, to sum reverberation");
+  if (scenario_.propagation.band == BandOfLosses::wide)
+    refuse("propagation.band", "\"wide\"", "one amplitude for the band, to sum reverberation");
   if (!scenario_.interferers.empty())
     refuse("interferer", "ships that are heard", "none, to sum what is received");
   const Emission emission = emit(transmission(ping), ping);

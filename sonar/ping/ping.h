@@ -22,6 +22,8 @@
 
 namespace asdic::detail {
 
+struct BandPart;
+
 /// Some of the samples of a record.
 struct SampleRange {
   std::ptrdiff_t first = 0;
@@ -140,8 +142,6 @@ class PingSimulator {
 
  private:
   [[nodiscard]] PingRecord blank_record(const PingGeometry& geometry) const;
-  /// Echoes and direct blasts, also put into the record with their legs.
-  std::vector<EchoPath> sparse_returns(const EchoContext& context, PingRecord& record) const;
   /// What a ping is for all who receive it.
   struct Emission {
     PingGeometry geometry;
@@ -149,7 +149,18 @@ class PingSimulator {
     const Pulse& pulse;
     BeamPattern pattern;
   };
+  /// Echoes and direct blasts, also put into the record with their legs.
+  std::vector<EchoPath> sparse_returns(const EchoContext& context, const Emission& emission,
+                                       PingRecord& record) const;
+  /// The summary's peak of a target's echoes, as summarise() asks for it.
+  [[nodiscard]] double peak_of(const Emission& emission, int array,
+                               std::span<const EchoPath> echoes, PingRecord& record) const;
   [[nodiscard]] Emission emit(const Transmission& sent, int ping) const;
+  /// Parts of the band by which echoes of many paths are received; empty: the centre stands for it.
+  /// \param loudest  of these paths   \param last  time at which one of them is received [s]
+  [[nodiscard]] std::vector<BandPart> band_of(const EchoContext& context, const Emission& emission,
+                                              const PingRecord& record,
+                                              std::span<const EchoPath> loudest, double last) const;
   void add_many_echoes(const EchoContext& context, const Emission& emission,
                        std::span<const Vec3> phones, const PingRecord& record,
                        Baseband& received) const;

@@ -51,8 +51,7 @@ Front nearest_reverberation(const PingGeometry& geometry, int array, double dura
   const Vec3& place = geometry.reference_place(array).position;
   const double apart = (geometry.source().position - place).norm();
   const PingSchedule& pings = scenario.pings;
-  const double begin = std::max(pings.recording_start, duration);
-  const double on_ellipse = 0.5 * (speed_at(scenario, place) * begin - apart);
+  const double on_ellipse = 0.5 * (speed_at(scenario, place) * duration - apart);
   return {.length = std::max(height_of(scenario, place), on_ellipse),
           .duration = pings.recording_start + pings.recording_duration,
           .highest_frequency = highest_frequency};

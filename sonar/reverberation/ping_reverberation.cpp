@@ -5,6 +5,7 @@
 
 #include "raytrace/parallel/parallel.h"
 #include "sonar/reverberation/scatterer_returns.h"
+#include "sonar/signal/pulse_coherence.h"
 
 namespace asdic::detail {
 
@@ -93,6 +94,16 @@ double PingReverberation::expected_db(double t) const {
          db_from_power(
              expected_->power([&](double since) { return context_.pulse.analytic(since); },
                               context_.pulse.duration(), t));
+}
+
+std::vector<double> PingReverberation::mean_power(double first, double step,
+                                                  std::size_t count) const {
+  const Pulse& pulse = context_.pulse;
+  return expected_->mean_power({.coherence = *pulse_coherence(pulse),
+                                .duration = pulse.duration(),
+                                .energy = pulse.energy(),
+                                .frequency = pulse.centre_frequency()},
+                               first, step, count);
 }
 
 PatchRows PingReverberation::rows(std::size_t most, PropagationMemory* memory) const {

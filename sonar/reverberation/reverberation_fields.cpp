@@ -120,6 +120,40 @@ double speed_at_surface(const Scenario& scenario, const PropagationPaths& paths)
   return paths.speed_at(place);
 }
 
+namespace {
+
+/// Depths of transmitters and arrays at a few of the pings. \param resolved  distance that the
+/// pulse tells apart [m]
+LayerEnds layer_ends(const Scenario& scenario, double resolved) {
+  LayerEnds ends;
+  if (scenario.reverberation.volume.empty()) return ends;
+  constexpr std::size_t looked_at = 16, steps = 50;
+  const std::vector<Transmission> sent = transmissions(scenario);
+  const std::size_t step = (sent.size() + looked_at - 1) / looked_at;
+  std::vector<double> lowest, highest;  // [transmitter and arrays]
+  for (std::size_t i = 0; i < sent.size(); i += step) {
+    const PingGeometry geometry(scenario, sent[i], static_cast<int>(i) + 1);
+    std::vector<double> now{geometry.source().position.z()};
+    for (std::size_t a = 0; a < scenario.arrays.size(); ++a)
+      now.push_back(geometry.reference_place(static_cast<int>(a)).position.z());
+    if (lowest.empty()) lowest = highest = now;
+    for (std::size_t k = 0; k < now.size(); ++k) {
+      lowest[k] = std::min(lowest[k], now[k]);
+      highest[k] = std::max(highest[k], now[k]);
+    }
+    ends.depths.insert(ends.depths.end(), now.begin(), now.end());
+  }
+  // A glider's sheets need not be finest at every depth where it ever is.
+  ends.finest = std::max(1.0, resolved);
+  for (std::size_t k = 0; k < lowest.size(); ++k)
+    ends.finest = std::max(ends.finest, (highest[k] - lowest[k]) / steps);
+  std::sort(ends.depths.begin(), ends.depths.end());
+  ends.depths.erase(std::unique(ends.depths.begin(), ends.depths.end()), ends.depths.end());
+  return ends;
+}
+
+}  // namespace
+
 ReverberationFields::ReverberationFields(const Scenario& scenario, const PropagationPaths& paths,
                                          const Pulse& widest)
     : scenario_(scenario),
@@ -131,7 +165,8 @@ ReverberationFields::ReverberationFields(const Scenario& scenario, const Propaga
       fastest_water_(asdic::detail::fastest_water(scenario)),
       resolved_sectors_(scenario.reverberation.resolve_azimuth
                             ? resolved_sectors(scenario, speed_at_surface(scenario, paths))
-                            : 1) {
+                            : 1),
+      ends_(layer_ends(scenario, 0.5 * speed_at_surface(scenario, paths) / widest.bandwidth_99())) {
   if (!scenario.area || !scenario.area->wind()) return;
   const double heard = 0.5 * fastest_water_ * end_of_record(scenario);
   const auto [least, most] =
@@ -159,7 +194,7 @@ int ReverberationFields::planes(double reach) const {
 
 std::vector<ScatteringPart> ReverberationFields::parts() const {
   return scattering_parts(scenario_.reverberation, scenario_.wind_speed,
-                          speed_at_surface(scenario_, paths_), winds_);
+                          speed_at_surface(scenario_, paths_), winds_, ends_);
 }
 
 bool ReverberationFields::forgets_places(const ScatteringPart& part,

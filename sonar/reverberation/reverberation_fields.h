@@ -69,6 +69,7 @@ class ReverberationFields {
   BoundaryFans fans_;
   double spacing_, fastest_water_;
   int resolved_sectors_;
+  LayerEnds ends_;          // of all pings
   std::vector<int> winds_;  // kinds of them (wind_kind()) that are heard, where they are mapped
 };
 

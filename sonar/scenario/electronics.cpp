@@ -23,7 +23,8 @@ void check_of_phones(Fields& field, std::string_view key, const std::vector<doub
 /// Numbers of phones, from 0.
 void describe_dead(Fields& field, std::vector<int>& dead) {
   std::vector<double> phones(dead.begin(), dead.end());
-  field("dead", phones, {.noun = "phone", .low = 0.0}, "phones, from 0, that give nothing");
+  field("dead", phones, {.noun = "phone", .low = 0.0, .high = 4095.0},
+        "phones, from 0, that give nothing");
   if (field.checks()) {
     const double all = field.known("phones");
     for (std::size_t i = 0; i < phones.size(); ++i)
@@ -38,8 +39,8 @@ void describe_dead(Fields& field, std::vector<int>& dead) {
 
 void Electronics::BandPass::describe(Fields& field) {
   field("order", order, 1, 32, "of the Butterworth filter");
-  field(required("low"), low, quantity::frequency, "3 dB down, below the band");
-  field(required("high"), high, quantity::frequency, "3 dB down, above the band");
+  field(required("low"), low, quantity::frequency_step, "3 dB down, below the band");
+  field(required("high"), high, quantity::frequency_step, "3 dB down, above the band");
   if (field.checks() && high <= low)
     field.fault("high", "a frequency above low, " + to_text(low) + " Hz");
 }
@@ -47,7 +48,7 @@ void Electronics::BandPass::describe(Fields& field) {
 void Electronics::Converter::describe(Fields& field) {
   field(required("bits"), bits, 2, 24, "of a sample");
   field(required("full_scale"), full_scale,
-        {.noun = "pressure", .unit = "Pa", .low = 0.0, .high = 1e9, .above = true},
+        {.noun = "pressure", .unit = "Pa", .low = 1e-9, .high = 1e9},
         "peak that is just not clipped");
 }
 

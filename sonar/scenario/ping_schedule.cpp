@@ -6,12 +6,9 @@
 namespace asdic::detail {
 
 void PingSchedule::describe(Fields& field) {
-  constexpr Quantity rate{
-      .noun = "sample rate", .unit = "Hz", .low = 0.0, .high = 1e7, .above = true};
+  constexpr Quantity rate{.noun = "sample rate", .unit = "Hz", .low = 0.1, .high = 1e7};
   field("count", count, 1, 1'000'000, "of each transmitter");
-  field("interval", interval,
-        {.noun = "interval", .unit = "s", .low = 0.0, .high = 1e7, .above = true},
-        "from ping to ping of one transmitter");
+  field("interval", interval, quantity::interval, "from ping to ping of one transmitter");
   field(by_default("elevations", "those of the transmitters"), elevations, quantity::elevation,
         "of the transmitter in each ping, repeated as needed");
   if (field.checks() && !elevations.empty() && field.known("transmitter.has_elevation") > 0.0)

@@ -1,21 +1,8 @@
 #include "sonar/scenario/propagation_settings.h"
 
-#include <span>
-#include <string_view>
-
 #include "core/fields.h"
 
 namespace asdic::detail {
-namespace {
-
-/// wide_band, as files say it.
-enum class BandOfLosses { narrow, wide };
-constexpr std::string_view band_of_losses_words[] = {"narrow", "wide"};
-constexpr std::span<const std::string_view> words(BandOfLosses /*any*/) {
-  return band_of_losses_words;
-}
-
-}  // namespace
 
 void PropagationSettings::describe(Fields& field) {
   field(
@@ -26,17 +13,17 @@ void PropagationSettings::describe(Fields& field) {
   field(or_word("max_bottom_bounces", "auto"), max_bottom_bounces, 0, 1000,
         "of a path; auto: as many as there is sound in");
   field("max_launch_angle", max_launch_angle,
-        AngleQuantity{.noun = "angle", .low_deg = 0.0, .high_deg = 90.0, .above = true},
+        AngleQuantity{.noun = "angle", .low_deg = 0.01, .high_deg = 90.0},
         "of a path, from the horizontal");
   field("direct_blast", direct_blast,
         "whether arrays on other platforms receive the ping itself, without a target");
   field("fathometer", fathometer,
         "whether arrays on the transmitter's platform receive the ping mirrored by surface and "
         "bottom");
-  BandOfLosses band = wide_band ? BandOfLosses::wide : BandOfLosses::narrow;
-  field("band", band,
-        "losses and patterns of echoes at the centre, or at every frequency of the pulse");
-  if (field.reads()) wide_band = band == BandOfLosses::wide;
+  field(
+      "band", band,
+      "losses, patterns and waves at the centre, or at every frequency of the pulse; auto: echoes "
+      "and direct sound at every frequency where that changes them");
   field("exact_per_phone", exact_per_phone,
         "eigenrays to every phone, also where a plane wave is enough");
   field("diffraction", diffraction, "whether sound goes where no ray does, in stratified water");

@@ -1,11 +1,25 @@
 #pragma once
+#include <cstdint>
 #include <optional>
+#include <span>
+#include <string_view>
 
 #include "core/units.h"
 
 namespace asdic::detail {
 
 class Fields;
+
+/// Frequencies at which losses, patterns and the amplitudes of waves are taken.
+enum class BandOfLosses : std::uint8_t {
+  automatic,  ///< echoes and direct sound: as `wide` where that changes them, else as `narrow`
+  narrow,     ///< the pulse's centre
+  wide,       ///< all of the pulse
+};
+inline constexpr std::string_view band_of_losses_words[] = {"auto", "narrow", "wide"};
+constexpr std::span<const std::string_view> words(BandOfLosses /*any*/) {
+  return band_of_losses_words;
+}
 
 /// What is searched for. A path is kept when it is within all the limits.
 struct PropagationSettings {
@@ -16,8 +30,8 @@ struct PropagationSettings {
   double max_launch_angle = 0.5 * pi;  ///< from the horizontal [rad]
   bool direct_blast = true;            ///< arrays on other platforms receive the ping on its way
   bool fathometer =
-      false;               ///< those on the transmitter's own receive it mirrored by the boundaries
-  bool wide_band = false;  ///< echoes' losses and patterns at every frequency of the pulse
+      false;  ///< those on the transmitter's own receive it mirrored by the boundaries
+  BandOfLosses band = BandOfLosses::automatic;
   bool diffraction = true;       ///< echoes and direct sound where no ray goes, in stratified water
   bool exact_per_phone = false;  ///< eigenrays to every phone, also where a plane wave is enough
 

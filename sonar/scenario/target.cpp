@@ -169,7 +169,7 @@ void Highlight::describe(Fields& field) {
 }
 
 void Hull::describe(Fields& field) {
-  constexpr Quantity axis{.noun = "length", .unit = "m", .low = 0.0, .high = 2000.0, .above = true};
+  constexpr Quantity axis{.noun = "length", .unit = "m", .low = 1e-3, .high = 2000.0};
   field(required("length"), length, axis, "from bow to stern");
   field(required("beam"), beam, axis, "from side to side");
 }

@@ -11,7 +11,8 @@ namespace asdic::detail {
 
 void Waypoint::describe(Fields& field, const Waypoint* before) {
   const bool held = field.checks() && before != nullptr;
-  field(required("time"), time, {.noun = "time", .unit = "s"}, "since the start of the scenario");
+  field(required("time"), time, {.noun = "time", .unit = "s", .low = -1e9, .high = 1e9},
+        "since the start of the scenario");
   if (held && time <= before->time)
     field.fault("time", "a time after the waypoint before it, " + to_text(before->time) + " s");
   field(required("position"), position, quantity::coordinate, "where it is then");

@@ -37,8 +37,7 @@ void Transmitter::describe(Fields& field) {
   field("offset", offset, quantity::coordinate, "from the platform");
   field("first_ping_time", first_ping_time, {.noun = "time", .unit = "s", .low = 0.0, .high = 1e9},
         "of its first ping");
-  field(by_default("interval", "that of [pings]"), interval,
-        {.noun = "interval", .unit = "s", .low = 0.0, .high = 1e7, .above = true},
+  field(by_default("interval", "that of [pings]"), interval, quantity::interval,
         "from ping to ping");
   field(by_default("elevations", "those of [pings]"), elevations, quantity::elevation,
         "of each ping in turn, repeated as needed");

@@ -65,4 +65,26 @@ BandLimitedPulse::BandLimitedPulse(const Pulse& pulse, double sample_rate,
   half_duration_ = -first + 12.0 / rate;  // SampledSignal's own reach
 }
 
+namespace {
+
+/// Of the pulse's frequencies f + ν those that a complex recording holds under every Doppler
+/// factor, |η(f + ν) − f_rec| ≤ rate/2: the full width in ν [Hz]. Two bins of the period are left
+/// for rounding the carrier and the band to bins.
+double recorded_width(const Pulse& sent, const Recording& record, double max_doppler) {
+  if (!record.is_complex()) return infinity;
+  const double f = sent.centre_frequency();
+  const double bin = record.sample_rate / static_cast<double>(record.samples);
+  const double half = 0.5 * record.sample_rate - 2.0 * bin - std::abs(f - record.carrier);
+  return std::max(2.0 * (half - f * max_doppler) / (1.0 + max_doppler), sent.bandwidth_40db());
+}
+
+}  // namespace
+
+BandLimitedPulse recorded_pulse(const Pulse& sent, const Recording& record, double max_doppler,
+                                const std::function<double(double)>& filter) {
+  const double rate =
+      record.is_complex() ? 2.0 * record.carrier + record.sample_rate : record.sample_rate;
+  return {sent, rate, filter, recorded_width(sent, record, max_doppler)};
+}
+
 }  // namespace asdic::detail

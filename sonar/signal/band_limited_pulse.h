@@ -5,6 +5,7 @@
 
 #include "core/units.h"
 #include "sonar/signal/pulse.h"
+#include "sonar/signal/recording.h"
 #include "sonar/signal/sampled_signal.h"
 
 namespace asdic::detail {
@@ -49,5 +50,11 @@ class BandLimitedPulse {
   SampledSignal signal_;
   double centre_frequency_ = 0.0, half_duration_ = 0.0, half_band_ = 0.0;
 };
+
+/// The pulse as a recording holds it under every Doppler factor, through a filter. \param
+/// max_doppler largest |η − 1|   \param filter  as BandLimitedPulse takes it
+[[nodiscard]] BandLimitedPulse recorded_pulse(const Pulse& sent, const Recording& record,
+                                              double max_doppler,
+                                              const std::function<double(double)>& filter = {});
 
 }  // namespace asdic::detail

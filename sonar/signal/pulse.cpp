@@ -215,7 +215,7 @@ void PulseSettings::describe(Fields& field) {
     field.derived(duration);
     return;
   }
-  field(required("duration"), duration, quantity::duration,
+  field(required("duration"), duration, quantity::pulse_duration,
         "from the leading to the trailing edge");
   if (field.checks()) check_waveform(waveform, field, duration);
   if (field.reads() || field.exhaustive())

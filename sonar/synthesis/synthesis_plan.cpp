@@ -46,36 +46,17 @@ void check(const Pulse& pulse, const Recording& recording, double max_doppler) {
     throw InputError({.where = "recording.samples", .got = "0", .expected = "at least 1"});
 }
 
-/// Of the pulse's frequencies f + ν those that a complex recording holds under every Doppler
-/// factor, |η(f + ν) − f_rec| ≤ rate/2: the full width in ν [Hz]. Two bins of the period are left
-/// for rounding the carrier and the band to bins.
-double recorded_width(const Pulse& sent, const Recording& record, double max_doppler) {
-  if (!record.is_complex()) return infinity;
-  const double f = sent.centre_frequency();
-  const double bin = record.sample_rate / static_cast<double>(record.samples);
-  const double half = 0.5 * record.sample_rate - 2.0 * bin - std::abs(f - record.carrier);
-  return std::max(2.0 * (half - f * max_doppler) / (1.0 + max_doppler), sent.bandwidth_40db());
-}
-
-/// The pulse through every filter.
-std::vector<BandLimitedPulse> filtered(const Pulse& sent, const Recording& record,
-                                       double max_doppler,
-                                       const std::vector<std::function<double(double)>>& filters) {
-  const double rate =
-      record.is_complex() ? 2.0 * record.carrier + record.sample_rate : record.sample_rate;
-  const double recorded = recorded_width(sent, record, max_doppler);
-  std::vector<BandLimitedPulse> pulses;
-  for (const auto& filter : filters) pulses.emplace_back(sent, rate, filter, recorded);
-  return pulses;
-}
-
-/// The same, and after several the pulse itself: what all of them share is worked out for it.
+/// The pulse through every filter, and after several the pulse itself: what all of them share is
+/// worked out for it.
 std::vector<BandLimitedPulse> responses(const Pulse& sent, const Recording& record,
                                         double max_doppler,
                                         std::vector<std::function<double(double)>> filters) {
   check(sent, record, max_doppler);
   if (filters.size() > 1) filters.emplace_back();
-  return filtered(sent, record, max_doppler, filters);
+  std::vector<BandLimitedPulse> pulses;
+  for (const auto& filter : filters)
+    pulses.push_back(recorded_pulse(sent, record, max_doppler, filter));
+  return pulses;
 }
 
 std::uint64_t next_identity() {

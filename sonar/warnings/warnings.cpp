@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/geometry.h"
+#include "core/text.h"
 #include "raytrace/paths/eigenrays.h"
 #include "raytrace/places/propagation_paths.h"
 #include "raytrace/volume/area_volume.h"
@@ -20,6 +21,7 @@
 #include "sonar/paths/enough_bounces.h"
 #include "sonar/reverberation/phone_groups.h"
 #include "sonar/scenario/ping_bounds.h"
+#include "sonar/scenario/ping_geometry.h"
 #include "sonar/scenario/sampling.h"
 #include "sonar/scenario/transmission.h"
 
@@ -194,14 +196,12 @@ std::string reverberation_plane_waves(const Scenario& scenario) {
     const double error = one_group(listening(geometry, 0), front, point).error;
     if (error <= reverberation_periods) continue;
     const double far = front.length * error / reverberation_periods;
-    char text[320];
-    std::snprintf(text, sizeof text,
-                  "reverberation.synthesis: drawn from its covariance, it is plane waves for array "
-                  "%s: the first are up to %.2g periods off at its ends, 1/16 after %.2g s; with "
-                  "\"automatic\" they are not",
-                  array_of(scenario, 0).name.c_str(), error,
-                  2.0 * far / speed_at(scenario, receives.position));
-    return text;
+    return formatted(
+        "reverberation.synthesis: drawn from its covariance, it is plane waves for array "
+        "%s: the first are up to %.2g periods off at its ends, 1/16 after %.2g s; with "
+        "\"automatic\" they are not",
+        array_of(scenario, 0).name.c_str(), error,
+        2.0 * far / speed_at(scenario, receives.position));
   }
   return "";
 }
@@ -238,13 +238,11 @@ std::string noise_of_a_bent_line(const Scenario& scenario) {
           change, coherence_change(motion, bent[i].second, quarter, 2.0 * pi * highest / c, field));
     constexpr double received = 0.1;
     if (change <= received) continue;
-    char text[256];
-    std::snprintf(text, sizeof text,
-                  "noise.coherence: array %s turns, and in each block of %.2g s its noise has the "
-                  "shape of the block's middle: the coherence of two phones changes by up to %.2g "
-                  "at %g Hz meanwhile",
-                  array_of(scenario, array).name.c_str(), block, change, highest);
-    return text;
+    return formatted(
+        "noise.coherence: array %s turns, and in each block of %.2g s its noise has the "
+        "shape of the block's middle: the coherence of two phones changes by up to %.2g "
+        "at %g Hz meanwhile",
+        array_of(scenario, array).name.c_str(), block, change, highest);
   }
   return "";
 }
@@ -264,13 +262,10 @@ std::string beyond_the_map(const Scenario& scenario, double heard) {
       if (edge.distance < nearest.distance) nearest = edge;
     }
   if (nearest.distance >= heard) return "";
-  char text[320];
-  std::snprintf(
-      text, sizeof text,
-      "environment.area: sound is followed to %.3g km, and %.100s ends %.3g km away at %.0f "
+  return formatted(
+      "environment.area: sound is followed to %.3g km, and %s ends %.3g km away at %.0f "
       "degrees; beyond it its edge goes on",
       heard / 1000.0, nearest.map.c_str(), nearest.distance / 1000.0, degrees(nearest.bearing));
-  return text;
 }
 
 std::string wind_elsewhere(const Scenario& scenario) {
@@ -289,12 +284,10 @@ std::string wind_elsewhere(const Scenario& scenario) {
       where = scenario.platforms[array.platform].name;
     }
   if (std::abs(worst) < felt) return "";
-  char text[240];
-  std::snprintf(text, sizeof text,
-                "environment.area.wind: noise is that of %.3g m/s, over the first array when the "
-                "scenario starts; over platform %.40s it comes to be %.3g m/s",
-                scenario.wind_speed, where.c_str(), scenario.wind_speed + worst);
-  return text;
+  return formatted(
+      "environment.area.wind: noise is that of %.3g m/s, over the first array when the "
+      "scenario starts; over platform %s it comes to be %.3g m/s",
+      scenario.wind_speed, where.c_str(), scenario.wind_speed + worst);
 }
 
 std::string far_from_the_origin(const Scenario& scenario) {
@@ -400,13 +393,11 @@ std::string left_out_diffraction(const Scenario& scenario) {
     for (const Arrival& ray : EigenraySolver(ocean).find(source.z(), place.z(), range, frequency,
                                                          limits_of(scenario.propagation)))
       if (ray.bottom_bounces == 0) return "";
-    char text[240];
-    std::snprintf(text, sizeof text,
-                  "propagation: no ray reaches target \"%.60s\" without the bottom, and %.3g Hz "
-                  "over %.3g km are too dear for the wave equation: sound out of ducts and into "
-                  "shadows is left out",
-                  target.name.c_str(), frequency, range / 1000.0);
-    return text;
+    return formatted(
+        "propagation: no ray reaches target \"%s\" without the bottom, and %.3g Hz "
+        "over %.3g km are too dear for the wave equation: sound out of ducts and into "
+        "shadows is left out",
+        target.name.c_str(), frequency, range / 1000.0);
   }
   return "";
 }
@@ -435,6 +426,90 @@ std::string of_law(const char* where, const std::variant<Law...>& law, double lo
 }
 
 }  // namespace
+
+namespace {
+
+/// About how long sound takes from one place straight to another [s].
+double straight_delay(const Scenario& scenario, const Vec3& from, const Vec3& to) {
+  constexpr int parts = 16;
+  double slowness = 0.0;
+  for (int i = 0; i < parts; ++i)
+    slowness += 1.0 / (parts * speed_at(scenario, from + (i + 0.5) / parts * (to - from)));
+  return slowness * (to - from).norm();
+}
+
+}  // namespace
+
+std::string echo_beside_record(const Scenario& scenario) {
+  if (scenario.pings.continuous) return "";
+  constexpr std::size_t looked_at = 100;
+  const double begin = scenario.pings.recording_start, end = end_of_record(scenario);
+  const std::vector<Transmission> sent = transmissions(scenario);
+  const std::size_t step = (sent.size() + looked_at - 1) / looked_at;
+  for (std::size_t i = 0; i < sent.size(); i += step) {
+    const int ping = static_cast<int>(i) + 1;
+    const PingGeometry geometry(scenario, sent[i], ping);
+    const double duration = pulse_of(scenario, sent[i].transmitter).duration;
+    for (std::size_t t = 0; t < scenario.targets.size(); ++t) {
+      const Target& target = scenario.targets[t];
+      if (ping < target.first_ping || ping > target.last_ping) continue;
+      const Vec3 place = geometry.target_at(static_cast<int>(t), 0.0).position;
+      const double there = straight_delay(scenario, geometry.source().position, place);
+      double first = infinity;
+      bool received = scenario.arrays.empty();
+      for (std::size_t a = 0; a < scenario.arrays.size() && !received; ++a) {
+        const double delay =
+            there + straight_delay(scenario, place, geometry.reference_place(int(a)).position);
+        first = std::min(first, delay);
+        received = delay >= begin && delay + duration <= end;
+      }
+      if (received) continue;
+      char text[256];
+      std::snprintf(text, sizeof text,
+                    "pings.recording_duration: the echo of target %s is received from about %.3g s "
+                    "after ping %d on, for %.3g s; its record holds %g to %g s",
+                    target.name.c_str(), first, ping, duration, begin, end);
+      return text;
+    }
+  }
+  return "";
+}
+
+std::string overlapping_records(const Scenario& scenario) {
+  if (scenario.pings.continuous) return "";
+  const std::vector<Transmission> sent = transmissions(scenario);
+  double nearest = infinity;
+  for (std::size_t i = 1; i < sent.size(); ++i)
+    nearest = std::min(nearest, sent[i].time - sent[i - 1].time);
+  if (!(nearest < (1.0 - 1e-9) * end_of_record(scenario))) return "";
+  char text[256];
+  std::snprintf(
+      text, sizeof text,
+      "pings.recording_duration: a ping is recorded until %g s after it was sent, and the "
+      "next one is sent %g s after it: no record has what is received of other pings; "
+      "pings.continuous = true has all",
+      end_of_record(scenario), nearest);
+  return text;
+}
+
+std::string steered_line(const Scenario& scenario) {
+  constexpr double much = 1.25;
+  for (const Transmission& sent : transmissions(scenario)) {
+    const Transmitter& transmitter =
+        scenario.transmitters[static_cast<std::size_t>(sent.transmitter)];
+    const auto* line = std::get_if<LineBeam>(&transmitter.beam);
+    if (line == nullptr || line->taper == Taper::omnidirectional) continue;
+    const double width = line->steered_width(sent.elevation);
+    if (width < much * line->beamwidth) continue;
+    char text[256];
+    std::snprintf(text, sizeof text,
+                  "transmitter.beamwidth_deg: steered to %g deg, the line's beam is %.3g deg wide; "
+                  "%g deg is its width when it is not steered",
+                  degrees(sent.elevation), degrees(width), degrees(line->beamwidth));
+    return text;
+  }
+  return "";
+}
 
 std::string scattering_energy(const Scenario& scenario) {
   const ReverberationSettings& reverberation = scenario.reverberation;
@@ -473,15 +548,16 @@ namespace asdic::detail {
 std::vector<std::string> warnings(const Scenario& scenario) {
   const PulseFrequencies pulse = pulse_frequencies(scenario);
   std::vector<std::string> all = warnings(scenario.environment, pulse.lowest, pulse.highest);
-  add_warnings(
-      {checks::pulse_band(scenario), checks::comb_lines(scenario),
-       checks::noise_law_range(scenario), checks::noise_table_band(scenario),
-       checks::surface_scattering_range(scenario), checks::reverberation_plane_waves(scenario),
-       checks::noise_of_a_bent_line(scenario), checks::noise_from_below(scenario),
-       checks::left_out_diffraction(scenario), checks::beyond_the_map(scenario),
-       checks::wind_elsewhere(scenario), checks::far_from_the_origin(scenario),
-       checks::scattering_energy(scenario), checks::planes_beside_volume(scenario)},
-      all);
+  add_warnings({checks::pulse_band(scenario), checks::comb_lines(scenario),
+                checks::noise_law_range(scenario), checks::noise_table_band(scenario),
+                checks::surface_scattering_range(scenario),
+                checks::reverberation_plane_waves(scenario), checks::noise_of_a_bent_line(scenario),
+                checks::noise_from_below(scenario), checks::left_out_diffraction(scenario),
+                checks::beyond_the_map(scenario), checks::wind_elsewhere(scenario),
+                checks::far_from_the_origin(scenario), checks::scattering_energy(scenario),
+                checks::planes_beside_volume(scenario), checks::echo_beside_record(scenario),
+                checks::overlapping_records(scenario), checks::steered_line(scenario)},
+               all);
   return all;
 }
 

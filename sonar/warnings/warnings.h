@@ -44,6 +44,12 @@ namespace checks {
 [[nodiscard]] std::string wind_elsewhere(const Scenario& scenario);
 /// Places where an area's map, or the bounds that rays in three dimensions take of it, do not hold.
 [[nodiscard]] std::string far_from_the_origin(const Scenario& scenario);
+/// A target whose echo no array receives whole within its ping's record, by the straight way.
+[[nodiscard]] std::string echo_beside_record(const Scenario& scenario);
+/// Pings whose records overlap, none of which has what is received of the others.
+[[nodiscard]] std::string overlapping_records(const Scenario& scenario);
+/// A line of projectors that is steered so far that its beam is much wider than `beamwidth_deg`.
+[[nodiscard]] std::string steered_line(const Scenario& scenario);
 /// A scattering law of a rough boundary that hands out more energy than comes in.
 [[nodiscard]] std::string scattering_energy(const Scenario& scenario);
 

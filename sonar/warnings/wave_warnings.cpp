@@ -5,55 +5,75 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/text.h"
 #include "raytrace/warnings/warnings.h"
 #include "raytrace/waves/diffraction.h"
 #include "raytrace/waves/focus.h"
 #include "raytrace/waves/ray_errors.h"
-#include "sonar/echoes/wave_response.h"
+#include "sonar/echoes/leg_response.h"
+#include "sonar/echoes/sparse_sound.h"
 #include "sonar/paths/enough_bounces.h"
 #include "sonar/scenario/sampling.h"
 
 namespace asdic::detail {
 namespace {
 
-/// What is told of legs that are no rays: how far their level changes across the pulse.
+/// What is told of a leg across the pulse's band.
 struct AcrossThePulse {
-  double change_db = 0.0;  ///< from the centre to either edge, the most
+  double change_db = 0.0;  ///< of waves, from the centre to either edge, the most
+  double change = 0.0;     ///< of all, the same, over the leg's amplitude
   double error = 0.0;      ///< of what is computed across it, over the greatest
   double corners = 0.0;    ///< share of the leg's energy, of turned_at_corners()
   double caustics = 0.0;   ///< the same, of unsure_amplitudes()
 };
 
-AcrossThePulse across_the_pulse(const PropagationPaths& paths, const WaveLeg& leg,
-                                const Pulse& pulse, bool wide) {
-  const double centre = pulse.centre_frequency(), half = 0.5 * pulse.bandwidth_99();
-  if (wide) return {.error = wave_response(paths, leg, centre, half).error};
+AcrossThePulse across_the_pulse(const PropagationPaths& paths, const MetLeg& leg,
+                                const Pulse& pulse, BandOfLosses band) {
+  constexpr double matters = 0.01;  // of the leg's energy
   AcrossThePulse found;
-  for (const double f : {centre - half, centre + half}) {
-    const double db = db_from_amplitude(std::abs(wave_response(paths, leg, f)));
-    found.change_db = std::max(found.change_db, std::abs(db));
+  if (!changes_with_frequency(paths, leg)) return found;
+  const double half = 0.5 * pulse.bandwidth_99();
+  double energy = 0.0;
+  for (const Arrival& path : leg.paths) energy += std::norm(path.amplitude);
+  for (const double f : {leg.frequency - half, leg.frequency + half}) {
+    const std::vector<std::complex<double>> there = amplitudes_at(paths, leg, f);
+    double changed = 0.0;
+    for (std::size_t i = 0; i < there.size(); ++i) {
+      const std::complex<double> here = leg.paths[i].amplitude;
+      changed += std::norm(there[i] - here);
+      if (leg.paths[i].kind != ArrivalKind::ray && std::norm(here) >= matters * energy)
+        found.change_db =
+            std::max(found.change_db, std::abs(db_from_amplitude(std::abs(there[i] / here))));
+    }
+    if (energy > 0.0) found.change = std::max(found.change, std::sqrt(changed / energy));
   }
-  return found;
+  if (band == BandOfLosses::narrow) return found;
+  const bool followed = band == BandOfLosses::wide || found.change > tolerable_change;
+  return {.error = followed ? leg_response(paths, leg, leg.frequency, half).error : 0.0};
 }
 
 /// "" where the amplitudes of the centre will do, or those across the band are known.
 std::string line_of(const AcrossThePulse& waves, const std::string& whose) {
-  char text[300] = "", how_far[32] = "gone";
-  constexpr double tolerable_change_db = 1.0, tolerable_error = 0.03;
+  std::string text;
+  char how_far[32] = "gone";
+  constexpr double tolerable_change_db = 1.0, tolerable_share = 0.12, tolerable_error = 0.03;
   if (std::isfinite(waves.change_db))
     std::snprintf(how_far, sizeof how_far, "up to %.2g dB off", waves.change_db);
+  if (waves.change > tolerable_share)
+    text = formatted(
+        "propagation.band: what reaches %s off its boundaries has the reflection of the pulse's "
+        "centre; at the edges of its band %.0f %% of the pressure differ; \"wide\" follows it",
+        whose.c_str(), 100.0 * waves.change);
   if (waves.change_db > tolerable_change_db)
-    std::snprintf(
-        text, sizeof text,
-        "propagation.band: what reaches %.60s where no ray does, or at a caustic, has the "
+    text = formatted(
+        "propagation.band: what reaches %s where no ray does, or at a caustic, has the "
         "amplitude of the pulse's centre; at the edges of its band it is %s; \"wide\" follows it",
         whose.c_str(), how_far);
   if (waves.error > tolerable_error)
-    std::snprintf(text, sizeof text,
-                  "propagation.band: the level of what reaches %.60s where no ray does changes "
-                  "faster across the pulse than %d frequencies tell: errors up to %.2g of its "
-                  "greatest amplitude",
-                  whose.c_str(), int(most_wave_frequencies), waves.error);
+    text = formatted(
+        "propagation.band: what reaches %s changes faster across the pulse than %d frequencies "
+        "tell: errors up to %.2g of its greatest amplitude",
+        whose.c_str(), int(most_wave_frequencies), waves.error);
   return text;
 }
 
@@ -61,10 +81,8 @@ std::string line_of(const AcrossThePulse& waves, const std::string& whose) {
 std::string line_of_share(double share, const std::string& whose, const char* how) {
   constexpr double tolerable_share = 0.25;
   if (!(share > tolerable_share)) return "";
-  char text[320];
-  std::snprintf(text, sizeof text, "propagation: %.0f %% of the sound to or from %.60s %s",
-                100.0 * share, whose.c_str(), how);
-  return text;
+  return formatted("propagation: %.0f %% of the sound to or from %s %s", 100.0 * share,
+                   whose.c_str(), how);
 }
 constexpr char beside_corners[] =
     "turns so often beside corners of the sound-speed profile that rays have its phase wrong by a "
@@ -174,7 +192,7 @@ std::string dark_ground(const Scenario& scenario, const PropagationPaths& paths,
       const auto wave = diffracted_arrival(ocean, source.z(), depth, range, frequency);
       if (!wave) continue;
       const double more = 2.0 * db_from_power(1.0 + std::norm(wave->amplitude) / rays);
-      if (more > tolerable_db && most == 0.0)
+      if (more > tolerable_db && !(most > tolerable_db))
         nearest = range, dark = surface ? "surface" : "bottom";
       most = std::max(most, more);
     }
@@ -202,23 +220,14 @@ std::vector<std::string> wave_warnings(const PingGeometry& geometry, const Propa
     const PathLimits limits = limits_of(
         scenario.propagation,
         enough_bounces(paths, scenario.propagation, from, to, centre, end_of_record(scenario)));
-    constexpr double matters = 0.01;  // of the leg's energy
     const Arrivals arrivals = paths.find(from, to, centre, limits);
-    double energy = 0.0;
-    for (const Arrival& path : arrivals) energy += std::norm(path.amplitude);
-    AcrossThePulse worst;
-    worst.caustics =
+    AcrossThePulse across = across_the_pulse(
+        paths, {.from = from, .to = to, .paths = arrivals, .frequency = centre, .limits = limits},
+        received, scenario.propagation.band);
+    across.caustics =
         unsure_amplitudes(paths.along_transect(), from.z(), to.z(), centre, limits, arrivals);
-    worst.corners = turned_at_corners(paths.along_transect().environment(), arrivals, centre);
-    for (const Arrival& path : arrivals) {
-      if (path.kind == ArrivalKind::ray || std::norm(path.amplitude) < matters * energy) continue;
-      const AcrossThePulse one =
-          across_the_pulse(paths, {.from = from, .to = to, .path = path, .limits = limits},
-                           received, scenario.propagation.wide_band);
-      worst.change_db = std::max(worst.change_db, one.change_db);
-      worst.error = std::max(worst.error, one.error);
-    }
-    return worst;
+    across.corners = turned_at_corners(paths.along_transect().environment(), arrivals, centre);
+    return across;
   };
   std::vector<std::string> found;
   if (!paths.layered() || !scenario.propagation.diffraction) return found;

@@ -97,6 +97,10 @@ class Crew {
   /// Until every block is done, by this one or by others.
   void make_rows(StudyOutcome& outcome) {
     Journal journal(journal_of(run_.output, board_.worker()), work_.fingerprint);
+    if (!journal.alone())
+      throw RunError(journal.path().string() +
+                     ": the file system there knows no locks, by which processes that --join keep "
+                     "out of each other's journals: set another -o");
     journal.begin(run_.session);
     Seconds wait = pause();
     while (!run_.stop.stop_requested() && !board_.is_over()) {

@@ -117,6 +117,7 @@ void Journal::commit() {
 void Journal::close() { impl_->close(); }
 
 const std::filesystem::path& Journal::path() const noexcept { return impl_->database.path(); }
+bool Journal::alone() const noexcept { return impl_->database.locks(); }
 const std::string& Journal::identity() const noexcept { return impl_->identity; }
 const IndexSet& Journal::done() const noexcept { return impl_->done; }
 std::uint64_t Journal::damaged() const noexcept { return impl_->damaged; }

@@ -1,11 +1,14 @@
 #include "study/journal/sqlite.h"
 
+#include <fcntl.h>
 #include <sqlite3.h>
+#include <unistd.h>
 
 #include <utility>
 
 #include "core/error.h"
 #include "io/files/input_file.h"
+#include "io/files/output_lock.h"
 
 namespace asdic::detail::study::sqlite {
 
@@ -27,9 +30,13 @@ void distrust(sqlite3* connection) {
 Database::Database(const std::filesystem::path& path) : path_(path) {
   if (std::error_code unknown; std::filesystem::exists(path, unknown))
     require_file(path, "a journal of asdic study");
+  else  // an empty database, so that there is something to try a lock on
+    ::close(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644));
+  locks_ = !refuses_locks(path);
   const int code =
       sqlite3_open_v2(path.c_str(), &connection_,
-                      SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_FULLMUTEX, nullptr);
+                      SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_FULLMUTEX,
+                      locks_ ? nullptr : "unix-none");
   try {
     check(code);
   } catch (...) {

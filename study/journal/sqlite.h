@@ -27,9 +27,12 @@ class Database {
   void check(int code) const;
   [[nodiscard]] sqlite3* get() const noexcept { return connection_; }
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+  /// Whether others are kept out: false where the file system knows no locks.
+  [[nodiscard]] bool locks() const noexcept { return locks_; }
 
  private:
   std::filesystem::path path_;
+  bool locks_ = true;
   sqlite3* connection_ = nullptr;
 };
 

@@ -200,6 +200,11 @@ Pilot pilot(const Study& study, const PilotOptions& options) {
   made.processor.interval.low += made.start;
   made.processor.interval.high += made.start;
   made.budget = budget_of(study.scenario, MemoryBudget()).bytes();
+  // A row that asks for more than all may take is refused.
+  const double most = std::max(made.budget, made.row_memory);
+  for (double* bytes :
+       {&made.row_most.total, &made.row_most.interval.low, &made.row_most.interval.high})
+    if (*bytes > most) *bytes = most;
   const std::vector<Column> every = columns(study);
   made.file_row = 8.0 * static_cast<double>(every.size() + reuse_columns().size()) + 9.0;
   made.kept_row = kept.of_row();

@@ -8,6 +8,14 @@
 #include "study/summary/clustered_mean.h"
 
 namespace asdic::detail::study {
+namespace {
+
+/// An upper bound, or none.
+double supported(double high, double estimate) {
+  return high <= most_supported * estimate ? high : std::nan("");
+}
+
+}  // namespace
 
 Predicted predicted_total(std::span<const double> groups, std::uint64_t rows, std::uint64_t count,
                           double confidence) {
@@ -34,7 +42,7 @@ Predicted predicted_total(std::span<const double> groups, std::uint64_t rows, st
   const double middle = logs.mean() + 0.5 * v;
   const double wide = t * std::sqrt(v * spread + 0.5 * v * v / (n - 1.0));
   const double low = std::min(of.mean() - half, std::exp(middle - wide));
-  const double high = std::max(of.mean() + half, std::exp(middle + wide));
+  const double high = supported(std::max(of.mean() + half, std::exp(middle + wide)), of.mean());
   made.interval = {known + size * rest * std::max(0.0, low), known + size * rest * high};
   return made;
 }
@@ -56,8 +64,11 @@ Predicted predicted_greatest(std::span<const double> known, std::uint64_t count,
                       std::sqrt(1.0 / m + z * z / (2.0 * (m - 1.0)) + pi * pi / (6.0 * z * z));
   const double middle = logs.mean() + z * logs.deviation();
   const auto at_least = [&](double log) { return std::max(most, std::exp(log)); };
-  return {.total = at_least(middle),
-          .interval = {at_least(middle - wide), at_least(middle + wide)}};
+  const double total = at_least(middle);
+  if (!(total <= most_supported * std::max(most, least)))
+    return {.total = most, .interval = {most, std::nan("")}};
+  return {.total = total,
+          .interval = {at_least(middle - wide), supported(at_least(middle + wide), total)}};
 }
 
 std::vector<std::uint64_t> rows_to_try(std::uint64_t count, std::uint64_t groups,

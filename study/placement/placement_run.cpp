@@ -10,12 +10,15 @@
 #include <tuple>
 
 #include "core/error.h"
+#include "core/memory_budget.h"
 #include "core/random.h"
 #include "core/text.h"
+#include "io/scenario/propagation.h"
 #include "io/scenario/scenario_reader.h"
 #include "processing/coverage/coverage.h"
 #include "processing/detection_threshold.h"
 #include "raytrace/parallel/parallel.h"
+#include "raytrace/parallel/stop.h"
 #include "sonar/ping/ping.h"
 #include "study/measures/sampler.h"
 
@@ -85,7 +88,8 @@ void move_to(Scenario& scenario, const Vec2& place) {
 
 class Placing {
  public:
-  Placing(const PlacementPlan& plan, const Progress& progress) : plan_(plan), progress_(progress) {}
+  Placing(const PlacementPlan& plan, const Progress& progress)
+      : plan_(plan), progress_(progress), budget_(budget_of_all(plan)) {}
 
   Placement run() {
     begin();
@@ -93,13 +97,16 @@ class Placing {
     std::optional<Sampler> sampler;
     if (!plan_.inputs.variables.empty()) sampler.emplace(plan_.inputs);
     const std::size_t maps = count() * (problem.pairs ? count() : 1);
-    MemoryBudget budget;
-    budget.take(
+    // Maps, and which of their cells a ray comes to; what the search holds of a set.
+    const double numbers = double(std::max(plan_.draws, plan_.judging)) * double(size());
+    const double sets = problem.pairs ? double(most_workers()) + 1.0 : 1.0;
+    budget_.take(
         {.where = "placement.draws",
          .what = std::to_string(maps) + " maps in " + std::to_string(plan_.draws) + " draws",
-         .bytes = 4.0 * double(maps) * double(plan_.draws) * double(size()),
+         .bytes = double(maps) * (4.0 * double(plan_.draws) + 1.0) * double(size()) +
+                  8.0 * numbers * (sets * double(plan_.at_least) + 2.0),
          .remedy = "fewer places, cells or draws"});
-    problem.maps.assign(maps, std::vector<float>(plan_.draws * size()));
+    problem.maps.assign(maps, {});  // each is made with its first draw
     std::vector<std::size_t> all(count());
     for (std::size_t c = 0; c < all.size(); ++c) all[c] = c;
     to_do_ = double(maps * plan_.draws);
@@ -111,11 +118,6 @@ class Placing {
       wanted.insert(made_.choice.runner_up.begin(), made_.choice.runner_up.end());
       const std::vector<std::size_t> chosen(wanted.begin(), wanted.end());
       problem.maps.assign(maps, {});
-      for (const std::size_t a : chosen) {
-        if (!problem.pairs) problem.maps[a].resize(plan_.judging * size());
-        for (const std::size_t b : chosen)
-          if (problem.pairs) problem.maps[a * count() + b].resize(plan_.judging * size());
-      }
       problem.draws = plan_.judging;
       make_draws(sampler, plan_.draws, plan_.judging, chosen);
     }
@@ -130,6 +132,14 @@ class Placing {
   }
 
  private:
+  /// The least that an option's run.memory allows.
+  static MemoryBudget budget_of_all(const PlacementPlan& plan) {
+    MemoryBudget least = budget_of(plan.options.front().scenario);
+    for (const PlacementOption& option : plan.options)
+      if (MemoryBudget own = budget_of(option.scenario); own.bytes() < least.bytes())
+        least = std::move(own);
+    return least;
+  }
   [[nodiscard]] std::size_t count() const { return made_.problem.candidates.size(); }
   [[nodiscard]] std::size_t size() const { return made_.problem.weight.size(); }
   [[nodiscard]] const Vec2& place_of(std::size_t candidate) const {
@@ -293,12 +303,14 @@ class Placing {
       };
       for (const std::size_t a : wanted)
         for (const std::size_t b : wanted) {
-          const auto& candidates = made_.problem.candidates;
-          if (!made_.problem.pairs
-                  ? a != b
-                  : candidates[a].option != candidates[b].option && !plan_.across_options)
-            continue;
-          make(a, b, made_.problem.maps[made_.problem.pairs ? a * count() + b : a]);
+          PlacementProblem& problem = made_.problem;
+          const auto& candidates = problem.candidates;
+          if (!problem.pairs && a != b) continue;
+          stop_point();
+          std::vector<float>& values = problem.maps[problem.pairs ? a * count() + b : a];
+          values.resize(draws * size());
+          if (candidates[a].option != candidates[b].option && !plan_.across_options) continue;
+          make(a, b, values);
           if (!tell(double(each))) throw Interrupted();
         }
     }
@@ -333,14 +345,21 @@ class Placing {
       pair.settings.array = 0;
     }
     auto made = std::make_shared<SensorMap>();
-    const PingSimulator simulator(std::move(pair.scenario), nullptr, MemoryBudget());
+    const PingSimulator simulator(std::move(pair.scenario), nullptr,
+                                  budget_.share(budget_.left(), "what the maps leave"));
+    budget_.share(budget_.left(), "what the maps leave")
+        .take(coverage_need(simulator, pair.settings));
     made->found = coverage(simulator, pair.settings, [&](double) { return tell(0.0); });
     made->offset = made->found.receiver.head<2>() - place_of(b);
     auto& curve = curves_[std::tuple(pair.settings.fluctuation, made->found.threshold_db)];
     if (!curve) curve = std::make_shared<DetectionCurve>(pair.settings, made->found.threshold_db);
     made->curve = curve;
     for (const std::string& text : made->found.warnings) note_of_map(text);
-    if (shared) known_[key] = made;
+    if (!shared) return made;
+    const double cells = double(made->found.bearings.size()) * double(made->found.ranges.size());
+    const double bytes = cells * (4.0 + 37.0 * double(made->found.layers.size()));
+    if ((double(known_.size()) + 1.0) * bytes > 0.5 * budget_.left()) known_.clear();
+    known_[key] = made;
     return made;
   }
 
@@ -409,7 +428,8 @@ class Placing {
                             .weight = made_.problem.weight,
                             .maps = {}};
     std::swap(one.maps, made_.problem.maps);
-    for (std::size_t c = 0; c < count(); ++c) made_.alone.push_back(mean(shares_of(one, {c})));
+    made_.alone.resize(count());
+    in_parallel(count(), [&](std::size_t c) { made_.alone[c] = mean(shares_of(one, {c})); });
     std::swap(one.maps, made_.problem.maps);
   }
 
@@ -489,6 +509,7 @@ class Placing {
 
   const PlacementPlan& plan_;
   const Progress& progress_;
+  MemoryBudget budget_;
   Placement made_;
   std::set<std::string> warnings_;
   std::map<std::string, std::pair<std::string, std::size_t>> of_maps_;  // by their keys

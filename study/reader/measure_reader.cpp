@@ -171,7 +171,7 @@ void read_spectra(TomlTable& measures, MeasurePlan& plan) {
   TomlTable table = measures.table("spectra");
   plan.spectra_every = table.has("every") ? read_every(table, "every") : 1;
   if (table.has("resolution"))
-    plan.spectrum.resolution = table.number("resolution", quantity::frequency);
+    plan.spectrum.resolution = table.number("resolution", quantity::frequency_step);
   plan.spectrum.each_phone = table.choice("phones", {"mean", "each"}, "mean") == "each";
   table.finish();
 }

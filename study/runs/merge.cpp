@@ -301,7 +301,7 @@ MergeReport merge(const std::vector<fs::path>& paths, OutputFile& output,
 
 MergeReport merge(const std::vector<fs::path>& paths, const fs::path& output,
                   const SummariseFingerprint& summarise, const MergeOptions& options) {
-  OutputFile file(output, {.own = own::hdf5, .inputs = paths});
+  OutputFile file(output, {.own = own::hdf5, .worth = own::pings, .inputs = paths});
   return merge(paths, file, summarise, options);
 }
 

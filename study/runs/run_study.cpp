@@ -335,7 +335,8 @@ void write_output(const Work& work, const StudyRun& run, const OrderedEstimate& 
 }
 
 OutputFile output_of(const StudyRun& run) {
-  return OutputFile(run.output, {.own = own::hdf5, .force = run.force});
+  return OutputFile(run.output,
+                    {.own = own::hdf5, .worth = own::pings, .force = run.force, .renews = true});
 }
 
 StudyOutcome run_study(const Work& work, const StudyRun& run) {

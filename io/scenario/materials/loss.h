@@ -4,7 +4,7 @@
 namespace asdic::detail::scenario {
 
 inline constexpr Quantity shear_speed_quantity{
-    .noun = "speed", .unit = "m/s", .low = 0.0, .high = 1e5};
+    .noun = "speed", .unit = "m/s", .low = 1.0, .high = 1e4, .or_zero = true};
 
 /// What a wave loses: exactly one of several keys, each of a unit, or none and the default; written
 /// in dB per wavelength.

@@ -14,8 +14,7 @@ namespace {
 constexpr AngleQuantity reflection_phase{.noun = "phase", .low_deg = -36000.0, .high_deg = 36000.0};
 constexpr Quantity reflection_magnitude{.noun = "magnitude", .low = 0.0, .high = 1.0};
 constexpr Quantity reflection_loss{.noun = "loss", .unit = "dB", .low = 0.0, .high = 300.0};
-constexpr Quantity curve_frequency{
-    .noun = "frequency", .unit = "Hz", .low = 0.0, .high = 1e7, .above = true};
+constexpr Quantity curve_frequency{.noun = "frequency", .unit = "Hz", .low = 1e-3, .high = 1e7};
 
 /// Of the curve before, while a list of them is read.
 constexpr std::string_view last_frequency = "curve before.frequency";

@@ -1,6 +1,8 @@
 #include "sonar/scenario/beams/line_beam.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <sstream>
 
 #include "core/error.h"
@@ -36,7 +38,21 @@ std::string LineBeam::text(double elevation) const {
   if (taper == Taper::omnidirectional) return "omnidirectional";
   std::ostringstream text;
   text << "elevation " << degrees(elevation) << " deg, beamwidth " << degrees(beamwidth) << " deg";
+  const double width = steered_width(elevation);
+  if (width > 1.01 * beamwidth)
+    text << " unsteered, " << std::setprecision(3) << degrees(width) << " deg as it is steered";
   return text.str();
+}
+
+double LineBeam::steered_width(double elevation) const noexcept {
+  // The pattern depends on sin θ − sin θ₀ alone, and is −3 dB where that is ± sin(width/2).
+  const double axis = std::sin(elevation), beside = std::sin(0.5 * beamwidth);
+  const auto edge = [](double sine) { return std::asin(std::clamp(sine, -1.0, 1.0)); };
+  const double lowest = axis - beside, highest = axis + beside;
+  if (lowest <= -1.0 && highest >= 1.0) return 2.0 * pi;
+  if (highest >= 1.0) return 2.0 * (0.5 * pi - edge(lowest));
+  if (lowest <= -1.0) return 2.0 * (edge(highest) + 0.5 * pi);
+  return edge(highest) - edge(lowest);
 }
 
 LinePattern::LinePattern(Taper taper, double beamwidth, const BeamMount& mount)

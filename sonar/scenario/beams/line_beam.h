@@ -47,6 +47,9 @@ struct LineBeam {
     return {taper, beamwidth, mount};
   }
   [[nodiscard]] std::string text(double elevation) const;
+  /// Full −3 dB width of the main lobe when it is steered [rad]. Near endfire the lobe goes on
+  /// beyond the vertical: twice as far as from its edge to there.
+  [[nodiscard]] double steered_width(double elevation) const noexcept;
 };
 
 }  // namespace asdic::detail

@@ -14,8 +14,7 @@ struct StraightLine {
     field(required("phones"), phones, 1, 4096, "how many");
     const SettingKey key = live(by_default("spacing", "required of more than one phone"));
     field(phones == 1 ? key : required(key), spacing,
-          {.noun = "spacing", .unit = "m", .low = 0.0, .high = 1e4, .above = true},
-          "from phone to phone");
+          {.noun = "spacing", .unit = "m", .low = 1e-5, .high = 1e4}, "from phone to phone");
   }
   /// \param heading, pitch  of the line [rad], line_array()
   void build(ReceiverArray& array, double heading, double pitch) const {

@@ -81,7 +81,7 @@ void Costas::describe(Fields& field) {
           {.noun = "step", .low = 1.0, .high = static_cast<double>(most_chips)},
           "of the chips' frequencies, 1 the lowest, each once: a Costas array");
   if (const auto way = field.otherwise(ways, {"prime", "root"})) describe_welch(field, order);
-  field(by_default("step", "chips / duration"), step, quantity::frequency,
+  field(by_default("step", "chips / duration"), step, quantity::frequency_step,
         "from one frequency to the next");
   if (!field.checks()) return;
   if (order.size() < 2 || order.size() > most_chips)

@@ -16,7 +16,7 @@ void GeometricComb::describe(Fields& field) {
   if (field.reads() && start_frequency == end_frequency)
     field.fault("end_frequency", "a frequency other than start_frequency (or kind \"cw\")");
   field(required("lines"), lines, 3, 100, "of one frequency each");
-  field("gap_ratio", gap_ratio, {.noun = "ratio", .low = 1.0, .high = 10.0, .above = true},
+  field("gap_ratio", gap_ratio, {.noun = "ratio", .low = 1.0001, .high = 10.0},
         "of a gap between lines to the one before it");
 }
 

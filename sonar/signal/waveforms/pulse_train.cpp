@@ -18,11 +18,15 @@ void PulseTrain::describe(Fields& field) {
   if (const auto way = field.otherwise(ways, {"start_frequency", "end_frequency"}))
     describe_sweep(field, start_frequency, end_frequency);
   field(required("pulses"), pulses, 2, 10000, "within the duration");
-  field(required("pulse_duration"), pulse_duration, quantity::duration,
+  field(required("pulse_duration"), pulse_duration, quantity::pulse_duration,
         "of each, which the window shapes");
 }
 
 void PulseTrain::check(Fields& field, double duration) const {
+  constexpr double most = 1e4;  // the spectrum's samples run through the pauses too
+  if (duration > most * pulse_duration)
+    field.fault("pulse_duration",
+                "at least " + to_text(duration / most) + " s: the duration over " + to_text(most));
   if (pulses * pulse_duration > duration * (1.0 + 1e-9))
     field.fault("pulse_duration", "at most " + to_text(duration / pulses) +
                                       " s: " + std::to_string(pulses) +

@@ -52,11 +52,12 @@ FresnelAuxiliary fresnel_auxiliary(double x) noexcept {
 
 void Sfm::describe(Fields& field) {
   field(required("frequency"), frequency, quantity::frequency, "about which it swings");
-  field(required("swing"), swing, quantity::frequency, "from the lowest to the highest frequency");
-  field(required("modulation_frequency"), modulation_frequency, quantity::frequency,
+  field(required("swing"), swing, quantity::frequency_step,
+        "from the lowest to the highest frequency");
+  field(required("modulation_frequency"), modulation_frequency, quantity::frequency_step,
         "of the swings");
   field(by_default("end_modulation_frequency", "modulation_frequency"), end_modulation_frequency,
-        quantity::frequency, "of the swings at the trailing edge, where it goes to linearly");
+        quantity::frequency_step, "of the swings at the trailing edge, where it goes to linearly");
 }
 
 void Sfm::check(Fields& field, double /*duration*/) const {

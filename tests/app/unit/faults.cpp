@@ -28,6 +28,8 @@ TEST_P(Faults, AreOneLine) {
   static_cast<void>(folder.write("empty.toml", ""));
   static_cast<void>(folder.write("study.toml", "[study]\nscenario = \"small.toml\"\n"));
   static_cast<void>(folder.write("text.h5", "not HDF5 at all"));
+  static_cast<void>(folder.write("hello.jsonl", "{\"asdic\": 1}\n"));
+  static_cast<void>(folder.write("long.jsonl", std::string(20'000'000, 'x') + '\n'));
   const auto run = asdic(folder, GetParam().words);
   EXPECT_EQ(run.status, GetParam().status);
   EXPECT_EQ(run.out, "");
@@ -66,7 +68,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"rays small.toml --range nan", 2, {"--range", "expected a length"}},
         Fault{"rays small.toml --range 0",
               2,
-              {"--range", "expected a range above 0 and at most 20000000 m"}},
+              {"--range", "expected a range from 0.001 to 20000000 m"}},
         Fault{"rays small.toml --elevations 0,95", 2, {"--elevations", "95 degrees"}},
         Fault{"rays small.toml --source-depth 2km", 2, {"--source-depth", "2000 m", "1000 m"}},
         Fault{"arrivals small.toml --range 5km", 2, {"--receiver-depth", "go together"}},
@@ -124,7 +126,15 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"arrivals small.toml -o /proc/a.h5", 1, {"/proc/a.h5"}},
         Fault{"rays small.toml > /dev/full", 1, {"standard output"}},
         Fault{"arrivals small.toml --json > /dev/full", 1, {"standard output"}},
-        Fault{"--help > /dev/full", 1, {"standard output"}}));
+        Fault{"--help > /dev/full", 1, {"standard output"}},
+        Fault{"help units > /dev/full", 1, {"standard output"}},
+        Fault{"settings pulse > /dev/full", 1, {"standard output"}},
+        Fault{"validate small.toml > /dev/full", 1, {"standard output"}},
+        Fault{"serve small.toml < hello.jsonl > /dev/full", 1, {"standard output: No space left"}},
+        Fault{"serve small.toml --replay /dev/zero", 2, {"/dev/zero: found a device, expected"}},
+        Fault{"serve small.toml --replay long.jsonl",
+              2,
+              {"long.jsonl:1: found another line, expected what --log has written"}}));
 
 // Whatever a command reads: a file that is not there is told so, with what it should have been.
 INSTANTIATE_TEST_SUITE_P(

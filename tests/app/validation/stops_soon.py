@@ -85,6 +85,40 @@ depth = { first = 10.0, last = 4000.0, count = 200 }
 range = { first = 500.0, last = 100e3, count = 200 }
 """
 
+BUOY = SHALLOW.replace("max_surface_bounces = 50\nmax_bottom_bounces = 50", "max_surface_bounces = 1").replace(
+    "ground_spacing = 0.1", "enabled = false") + """
+[[target]]
+range = 2000.0
+bearing_deg = 0.0
+depth = 12.0
+strength_db = 10.0
+"""
+# Some 300 maps of 6400 cells in 40 draws.
+PLAN = """
+[placement]
+scenario = "buoy.toml"
+sensors = 6
+draws = 40
+ranges = 400
+target_depths = [12.0]
+map_error = "cells"
+[placement.places]
+east = [-4e3, 4e3]
+north = [-2e3, 2e3]
+step = 500.0
+[placement.cells]
+east = [-4e3, 4e3]
+north = [-4e3, 4e3]
+step = 100.0
+[[placement.option]]
+name = "low"
+[[placement.option]]
+name = "high"
+set = { "pulse.frequency" = 2000.0 }
+[vary]
+"noise.spectral_level_db" = { law = "uniform", low = 40.0, high = 50.0 }
+"""
+
 
 def processor_time(pid):
     """Of a process so far [s]; None when it is gone."""
@@ -133,19 +167,21 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         for name, text in (("shallow", SHALLOW), ("study", STUDY), ("field", FIELD.replace("TASK", "field")),
+                           ("place", PLAN), ("buoy", BUOY),
                            ("arrivals", FIELD.replace("TASK", "arrivals"))):
             with open(name + ".toml", "w") as file:
                 file.write(text)
         commands = {
             "ping": ["ping", "shallow.toml", "-o", "ping.h5", "-q"],
             "study": ["study", "study.toml", "-o", "study.h5", "-q"],
+            "place": ["place", "place.toml", "-o", "place.h5", "-q", "--threads", "1"],
             "field": ["field", "field.toml", "-o", "field.h5", "-q"],
             "arrivals": ["arrivals", "arrivals.toml", "-o", "arrivals.h5"],
         }
         # early, in the middle of preparations, and later; each kind of signal. Of a command one of them, two of ping,
         # and all in the deep check.
         moments = ((0.3, signal.SIGTERM), (1.5, signal.SIGHUP), (0.8, signal.SIGINT))
-        of = {"ping": moments[1:], "study": moments[2:], "field": moments[:1], "arrivals": moments[2:]}
+        of = {"ping": moments[1:], "study": moments[2:], "field": moments[:1], "place": moments[:2], "arrivals": moments[2:]}
         for name, words in commands.items():
             for seconds, number in moments if DEEP else of[name]:
                 process = start(words)

@@ -103,7 +103,7 @@ TEST(SonarSettings, PingsAndPathsAreKept) {
                                   .max_launch_angle = 0.3,
                                   .direct_blast = false,
                                   .fathometer = true,
-                                  .wide_band = true,
+                                  .band = BandOfLosses::wide,
                                   .diffraction = false,
                                   .exact_per_phone = true});
 }

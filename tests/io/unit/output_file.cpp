@@ -10,6 +10,7 @@
 #include <csignal>
 
 #include "core/error.h"
+#include "io/climatology/netcdf_file.h"
 #include "io/files/files_read.h"
 #include "io/hdf5/hdf5_file.h"
 #include "io/hdf5/own_files.h"
@@ -54,19 +55,41 @@ TEST_F(Output, HasItsNameOnlyWhenItIsWhole) {
   EXPECT_TRUE(parts_of(target).empty());
 }
 
-TEST_F(Output, RemovesItsOwnPartAndNoOther) {
+// The parts of runs that were killed go when the result is there: they are of no use, unless the
+// kind of result says so. One that failed leaves them as they were.
+TEST_F(Output, TakesPartsAwayThatAreOfNoUse) {
   const auto target = folder / "a.txt";
-  static_cast<void>(folder.write("a.txt.0000.part", "a salvage"));
+  static_cast<void>(folder.write("a.txt.0000.part", "a half"));
+  static_cast<void>(folder.write("a.txt.1111.part", "a salvage"));
   static_cast<void>(folder.write("a.txt.part", "somebody's"));
+  const auto worth = [](const std::filesystem::path& part) { return content(part) == "a salvage"; };
   {
-    OutputFile output(target);
+    OutputFile output(target, {.worth = worth});
     static_cast<void>(output.part());
-    EXPECT_EQ(parts_of(target).size(), 2U);
+    EXPECT_EQ(parts_of(target).size(), 3U);
   }
-  EXPECT_EQ(left_of(target), "a.txt.0000.part ");
-  OutputFile(target).write("x");
-  EXPECT_EQ(content(folder / "a.txt.0000.part"), "a salvage");
+  EXPECT_EQ(left_of(target), "a.txt.0000.part a.txt.1111.part ");
+  OutputFile(target, {.worth = worth}).write("x");
+  EXPECT_EQ(left_of(target), "a.txt.1111.part ");
   EXPECT_EQ(content(folder / "a.txt.part"), "somebody's");
+}
+
+// A signal that ends the program takes what is not whole away, but not what is worth keeping.
+TEST_F(Output, LeavesNothingWhenASignalEndsTheProgram) {
+  const auto target = folder / "a.txt";
+  {
+    OutputFile output(target), other(folder / "b.txt");
+    static_cast<void>(output.part());
+    static_cast<void>(other.part());
+    other.keep();
+    remove_unfinished();
+    EXPECT_EQ(left_of(target), "");
+    EXPECT_FALSE(std::filesystem::exists(target.string() + ".lock"));
+    EXPECT_EQ(parts_of(folder / "b.txt").size(), 1U);
+  }
+  OutputFile(target).write("x");
+  remove_unfinished();
+  EXPECT_EQ(content(target), "x");
 }
 
 TEST_F(Output, KeepsWhatIsWorthSomething) {
@@ -136,6 +159,32 @@ TEST_F(Output, IsNoInputOfTheRunUnderAnyName) {
   EXPECT_EQ(said(input, {.force = true}), "") << "another run has read nothing yet";
 }
 
+// What a command reads after it has begun its output is an input as well; but what it makes anew.
+TEST_F(Output, IsNoInputThatIsReadMeanwhile) {
+  const auto data = folder.write("cast.csv", "depth,speed\n0,1500\n");
+  for (const bool renews : {false, true}) {
+    const FilesRead reading;
+    OutputFile output(data, {.force = true, .renews = renews});
+    static_cast<void>(read_csv(data));
+    if (renews) {
+      output.write("new");
+    } else {
+      EXPECT_THROW(output.write("new"), RunError);
+      EXPECT_EQ(content(data), "depth,speed\n0,1500\n");
+      std::filesystem::remove(parts_of(data).at(0));
+    }
+  }
+  EXPECT_EQ(content(data), "new");
+}
+
+// A child reads for this process, and what it does is not seen here.
+TEST_F(Output, IsNoInputThatAChildReads) {
+  { Hdf5File::create(folder / "a.nc").set_attribute("", "filetype", "asdic ocean"); }
+  const FilesRead reading;
+  static_cast<void>(netcdf_variables(folder / "a.nc"));
+  EXPECT_THAT(said(folder / "a.nc", {.own = own::hdf5}), HasSubstr("found the input itself"));
+}
+
 // A letter that somebody put there while hours of work went on.
 TEST_F(Output, LeavesWhatCameMeanwhileAndKeepsTheResult) {
   const auto target = folder / "a.h5";
@@ -186,7 +235,7 @@ TEST_F(Output, TheLockOfAKilledProcessIsFree) {
   EXPECT_TRUE(std::filesystem::exists(target.string() + ".lock"));
   OutputFile(target).write("next");
   EXPECT_EQ(content(target), "next");
-  EXPECT_EQ(parts_of(target).size(), 1U) << "the killed one's, perhaps worth something";
+  EXPECT_TRUE(parts_of(target).empty()) << "the killed one's is of no use any more";
   EXPECT_FALSE(std::filesystem::exists(target.string() + ".lock"));
 }
 

@@ -87,7 +87,7 @@ TEST(NotedSettings, TellValueUnitAndWhetherItIsGiven) {
   is("target[0].velocity", "[0, 0, 0]", "m/s", false);
   is("environment.bottom.shape.range", "10 values, [0, 1, 2, … 9]", "m", true);
   is("environment.bottom.density", "1900", "kg/m3", false);
-  is("propagation.band", "\"narrow\"", "", false);
+  is("propagation.band", "\"auto\"", "", false);
   is("propagation.max_bottom_bounces", "0", "", true);
   is("run.memory", "2000000000", "bytes", true);
   std::vector<std::string> keys;

@@ -85,7 +85,7 @@ TEST(SoundScenario, SaysWhatIsWrong) {
   const char *t = plain_transmitter.c_str(), *a = plain_array.c_str(), *b = plain_target.c_str();
   const Fault faults[] = {
       {t, a, "strength_db = 1\n[propagation]\nband = \"medium\"",
-       "propagation.band: found \"medium\", expected \"narrow\" or \"wide\""},
+       "propagation.band: found \"medium\", expected \"auto\", \"narrow\" or \"wide\""},
       {t, a, "strength_db = 1\nhighlight = [{ offset = [1, 0, 0], strength_db = 1 }]",
        "strength_db: found 1, expected no \"strength_db\" beside highlight"},
       {t, a, "highlight = [{ offset = [1, 0, 0] }]", "highlight[0].strength_db: found nothing"},

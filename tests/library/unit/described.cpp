@@ -28,8 +28,9 @@ TEST(Settings, TellUnitsRangesWordsAndDefaults) {
   EXPECT_EQ(window.kind, asdic::Setting::Kind::word);
   EXPECT_THAT(window.words, testing::Contains("hann"));
   const asdic::Setting& duration = setting("pulse.duration");
-  EXPECT_EQ(duration.lowest, 0.0);
-  EXPECT_TRUE(duration.above_lowest);
+  EXPECT_EQ(duration.lowest, 1e-6);
+  EXPECT_FALSE(duration.or_zero);
+  EXPECT_TRUE(setting("environment.bottom.shear_speed").or_zero);
   const auto& tables = asdic::setting_tables();
   EXPECT_TRUE(std::any_of(tables.begin(), tables.end(),
                           [](const auto& one) { return one.path.starts_with("environment"); }));

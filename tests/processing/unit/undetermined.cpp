@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
+#include <span>
 #include <vector>
 
 #include "core/random.h"
 #include "processing/detector.h"
+#include "processing/factor_estimate.h"
 #include "processing/listening_band.h"
 #include "sonar/signal/pulse.h"
 #include "sonar/synthesis/direct_synthesis.h"
@@ -62,6 +65,28 @@ TEST(UndeterminedDoppler, IsToldAsTheBanksMiddle) {
   }
   EXPECT_GT(undetermined, 5);
   EXPECT_EQ(at_most_edge, 0);
+}
+
+// A bank of three filters, as every bank of a span this small, whatever the span is over the
+// pulse's cell: its making takes as long. It was the number of filters in a cell, squared.
+// Processor time.
+TEST(UndeterminedDoppler, NarrowBanksTakeNoLonger) {
+  constexpr double rate = 1000.0;
+  const Pulse pulse({.waveform = Lfm{.start_frequency = 100.0, .end_frequency = 300.0},
+                     .duration = 0.5,
+                     .window = PulseWindow::hann});
+  const Replica known(std::span<const float>(replica(pulse, rate)), rate);
+  const double cell = doppler_cell(known);
+  const auto seconds = [&](double span) {
+    const std::vector<double> bank = doppler_bank(known, span);
+    EXPECT_EQ(bank.size(), 3U);
+    const std::clock_t begin = std::clock();
+    const FactorFinder finder(known, bank[1] - bank[0], bank.size(), cell, 1);
+    EXPECT_TRUE(std::isfinite(finder.late()(1.0, bank[2])));
+    return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+  };
+  const double plain = seconds(0.1 * cell);
+  EXPECT_LT(seconds(1e-3 * cell), 5.0 * plain + 0.05);
 }
 
 }  // namespace

@@ -259,6 +259,42 @@ class Page(unittest.TestCase):
         self.assertEqual([p.name for p in self.folder.glob("*.part")], [])
 
 
+    def test_into_a_folder(self):
+        """-o NAME.html is the page, any other name a folder for it, which is made; a file there is nobody's page."""
+        def run(where):
+            words = [os.environ["ASDIC"], "plot", "--html", "sea.h5", "-o", where]
+            return subprocess.run(words, cwd=self.folder, capture_output=True, text=True)
+        for where, made in (("pics", "pics/sea.html"), ("new/pics", "new/pics/sea.html"), ("pics", "pics/sea.html"),
+                            ("named.html", "named.html")):
+            done = run(where)
+            self.assertEqual((done.returncode, done.stdout), (0, f"{made}: a page for a browser\n"), done.stderr)
+            self.assertTrue((self.folder / made).is_file())
+        (self.folder / "mine").write_text("mine")
+        refused = run("mine")
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("mine: found a file, expected a folder", refused.stderr)
+        self.assertEqual((self.folder / "mine").read_text(), "mine")
+
+    def test_settings_of_matplotlib_that_are_none(self):
+        """No window is opened and no backend needed, whatever the shell says; what keeps matplotlib from starting is
+        told in a line.
+        """
+        def run(**environment):
+            words = [os.environ["ASDIC"], "plot", "sea.h5", "-o", "drawn", "--only", "levels", "--force"]
+            return subprocess.run(words, cwd=self.folder, capture_output=True, text=True,
+                                  env=os.environ | environment)
+        for backend in ("nonsense", "TkAgg", "module://nowhere"):
+            done = run(MPLBACKEND=backend)
+            self.assertEqual((done.returncode, done.stderr), (0, ""), backend)
+        (self.folder / "file").write_text("")
+        self.assertEqual(run(MPLCONFIGDIR=str(self.folder / "file")).returncode, 0)  # another folder does
+        (self.folder / "settings").write_bytes(b"axes.grid: \xff\xfe\n")
+        done = run(MATPLOTLIBRC=str(self.folder / "settings"))
+        self.assertEqual(done.returncode, 1)
+        self.assertNotIn("Traceback", done.stderr)
+        self.assertRegex(done.stderr.splitlines()[-1], "^asdic plot: matplotlib does not start: ")
+
+
 class Numbers(unittest.TestCase):
     def test_joined_cells_keep_the_largest(self):
         random = np.random.default_rng(1)

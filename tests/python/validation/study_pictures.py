@@ -136,6 +136,36 @@ class Honest(Case):
             if name not in ("histograms", "sensitivity"):   # without intervals
                 self.assertIn("90 % confidence", words.replace("\n", " "), name)
 
+    def test_numbers_are_in_the_unit_that_the_axis_names(self):
+        """Of places 12 and 14 km away the axis reads 12 and 14, where it says km: along an input, over two, as the
+        estimate settles.
+        """
+        write(self.file)
+        with h5py.File(self.file, "r+") as f:
+            del f["summary/means_by_range"], f["summary/convergence"]
+            r = np.array([15e3, 35e3])
+            bins = {"range": (r, "m"), "range_low": (r - 10e3, "m"), "range_high": (r + 10e3, "m"),
+                    "count": np.full(2, 200.0)}
+            place = {f"place_east{end}": (np.array([12e3, 14e3]) + more, "m")
+                     for end, more in (("", 0.0), ("_low", -500.0), ("_high", 500.0))}
+            table(f, "means_by_range", "", **bins, **place)
+            table(f, "convergence", "", count=np.array([2.0, 400.0]), **place)
+            wind = {"wind_speed": ([3.0, 9.0, 3.0, 9.0], "m/s"), "range": (np.repeat(r, 2), "m"),
+                    "count": np.full(4, 100.0)}
+            table(f, "means_by_range_and_wind_speed", "", **{k: wind[k] for k in ("range", "wind_speed", "count")},
+                  **{k: (np.tile(v, 2), unit) for k, (v, unit) in place.items()})
+        study = study_data.read(str(self.file))
+        seen = 0
+        wanted = ["means_by_range", "means_by_range_and_wind_speed", "convergence"]
+        for name, fig in study_pictures.draw(study, wanted):
+            for axes in fig.axes:
+                for axis, ends in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
+                    if axis.get_label_text().endswith("/ km"):
+                        seen += 1
+                        self.assertLessEqual(max(ends), 50.0, (name, axis.get_label_text()))
+                        self.assertGreater(max(ends), 10.0, (name, axis.get_label_text()))
+        self.assertGreaterEqual(seen, 5)
+
     def orders(self):
         """Of two measures and three inputs: first orders, totals that are 0.2 more, and pairs."""
         write(self.file)

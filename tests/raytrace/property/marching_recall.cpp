@@ -5,6 +5,7 @@
 #include <random>
 
 #include "raytrace/tracing/marching_eigenrays.h"
+#include "support/deep.h"
 #include "support/oceans.h"
 #include "support/test_id.h"
 
@@ -83,6 +84,83 @@ TEST(MarchingRecall, UprightLegsSweepOverReceivers) {
     EXPECT_TRUE(std::any_of(found.begin(), found.end(), [&](const Arrival& a) {
       return std::abs(a.launch_elevation - launch) < 1e-7;
     })) << launch;
+}
+
+/// A floor of a few nodes, drawn, under water that is drawn.
+struct DrawnFloor {
+  Environment ocean;
+  double source = 0.0;
+  ReceiverPoint receiver;
+};
+DrawnFloor drawn_floor(std::uint64_t seed) {
+  std::mt19937_64 generator(seed);
+  const auto draw = [&](double low, double high) {
+    return std::uniform_real_distribution<>(low, high)(generator);
+  };
+  DrawnFloor drawn;
+  const double deep = std::pow(10.0, draw(1.7, 3.3)), range = deep * draw(3.0, 40.0);
+  const int nodes = 3 + static_cast<int>(draw(0.0, 8.0));
+  const double relief = draw(0.02, 0.6);
+  std::vector<double> ranges = {-0.5 * range}, depths;
+  for (int i = 0; i < nodes; ++i) ranges.push_back(range * (i + draw(0.1, 0.9)) / nodes);
+  ranges.push_back(1.5 * range);
+  for (std::size_t i = 0; i < ranges.size(); ++i)
+    depths.push_back(deep * (1.0 - relief * draw(0.0, 1.0)));
+  constexpr ShapeInterpolation rules[] = {ShapeInterpolation::piecewise_linear,
+                                          ShapeInterpolation::smooth,
+                                          ShapeInterpolation::curvilinear};
+  Environment& ocean = drawn.ocean;
+  ocean.bottom = {.depth = deep, .material = FluidHalfSpace{}};
+  ocean.bottom.shape = BoundaryShape(ranges, depths, rules[static_cast<int>(draw(0.0, 3.0))]);
+  const int water = static_cast<int>(draw(0.0, 3.0));
+  ocean.water = SoundSpeedProfile::isovelocity(1500.0);
+  if (water > 0) {
+    const std::vector<double> at = {0.0, 0.1 * deep, 0.3 * deep, deep};
+    std::vector<double> speed = {1515.0, 1512.0, 1495.0, 1500.0};
+    for (std::size_t i = 0; i < 4; ++i) speed[i] += draw(-5.0, i == 3 ? 10.0 : 5.0);
+    ocean.water = SoundSpeedProfile::table(
+        at, speed, water == 1 ? Interpolation::c_linear : Interpolation::pchip);
+  }
+  drawn.source = draw(0.05, 0.9) * ocean.bottom.shape->depth_at(0.0);
+  drawn.receiver = {range, draw(0.05, 0.9) * ocean.bottom.shape->depth_at(range)};
+  return drawn;
+}
+
+// Energy at a receiver over floors with up to ten nodes. Truth is the search for it and 120 others
+// around it, which splits the fan some hundred times finer. Out of 150 draws these lost 0.06 to
+// 0.67 dB: a ray that had bounced as often as is allowed was taken to say that its neighbours went
+// no further; one between two that run through the column and does not come there itself, that none
+// does; and three that part far from the receiver, that those between come no nearer.
+TEST(MarchingRecall, ShapesLoseNoPathThatMatters) {
+  const std::vector<int> draws = support::deep() ? std::vector<int>{6, 16, 35, 37, 38, 69, 84}
+                                                 : std::vector<int>{16, 37, 38, 69};
+  for (const int seed : draws) {
+    const DrawnFloor drawn = drawn_floor(static_cast<std::uint64_t>(seed));
+    const RayTracer tracer(drawn.ocean, 1000.0);
+    const FanLimits limits{.lowest = -0.5 * pi,
+                           .highest = 0.5 * pi,
+                           .max_surface_bounces = 3,
+                           .max_bottom_bounces = 3,
+                           .faintest = 1e-3};
+    std::mt19937_64 generator(77);
+    std::uniform_real_distribution<> uniform(0.0, 1.0);
+    std::vector<ReceiverPoint> many = {drawn.receiver};
+    for (int i = 0; i < 120; ++i) {
+      const double range =
+          drawn.receiver.range * (i % 2 == 0 ? 1.0 : 0.9 + 0.2 * uniform(generator));
+      many.push_back(
+          {range, (0.02 + 0.96 * uniform(generator)) * drawn.ocean.bottom.shape->depth_at(range)});
+    }
+    const auto energy = [](const Arrivals& paths) {
+      double sum = 0.0;
+      for (const Arrival& path : paths) sum += std::norm(path.amplitude);
+      return sum;
+    };
+    const double alone = energy(
+        marching_eigenrays(tracer, 0.0, drawn.source, std::span(&drawn.receiver, 1), limits)[0]);
+    const double truth = energy(marching_eigenrays(tracer, 0.0, drawn.source, many, limits)[0]);
+    EXPECT_NEAR(10.0 * std::log10(alone / truth), 0.0, 0.05) << seed;
+  }
 }
 
 // A receiver just above a rising bottom: the leg that begins on the bottom before it does so deeper

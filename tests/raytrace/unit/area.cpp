@@ -322,5 +322,33 @@ TEST(AreaSection, WaterIsThatOfTheVolume) {
     }
 }
 
+// Water on a grid of 92 km, whose half a step about two places reaches to 46 km: the floor is that
+// of its own map in every plane, and both maps end where they do.
+TEST(AreaSection, CoarseWaterDoesNotCutTheFloor) {
+  const MapOf coarse(-46e3, 46e3, 2, 2,
+                     [](double, double, std::size_t k) { return k == 0 ? 1510.0 : 1500.0; });
+  const WaterMap water(coarse.grid, MapFrame::projected(0.0, 0.0), {0.0, 3000.0}, {"coarse"});
+  const auto ridge = [](double x, double y) {
+    return 3000.0 - 3050.0 * std::exp(-std::pow((std::hypot(x, y) - 11e3) / 1500.0, 2.0));
+  };
+  const ScalarMap floor = floor_of(120e3, 500.0, ridge);
+  const Area alone({.floor = floor}, sandy()), both({.floor = floor, .water = water}, sandy());
+  const Vec2 place(30.0, -20.0);
+  for (const double bearing : {0.0, 1.2, 3.3}) {
+    const Environment one = alone.section(place, bearing, 100e3),
+                      other = both.section(place, bearing, 100e3);
+    for (double r = 0.0; r < 100e3; r += 250.0)
+      ASSERT_EQ(one.bottom.depth_at(r), other.bottom.depth_at(r)) << bearing << ' ' << r;
+    EXPECT_LT(other.bottom.depth_at(11e3), 1.0);  // land
+  }
+  // Half a step beyond the outer places: 92 km of the water, 120.25 km of the floor.
+  EXPECT_NEAR(both.reach_on_map({0.0, 0.0}, 0.5 * pi, 500e3), 92e3, 2e-3);
+  EXPECT_NEAR(alone.reach_on_map({0.0, 0.0}, 0.5 * pi, 500e3), 120.25e3, 2e-3);
+  EXPECT_EQ(both.reach_on_map({0.0, 0.0}, 0.5 * pi, 50e3), 50e3);
+  const Area::Edge edge = both.nearest_edge({0.0, 0.0}, 500e3);
+  EXPECT_NEAR(edge.distance, 92e3, 2e-3);
+  EXPECT_EQ(edge.map, "coarse");
+}
+
 }  // namespace
 }  // namespace asdic::detail

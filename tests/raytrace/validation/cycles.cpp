@@ -122,31 +122,18 @@ Off off(const Water& water, const Places& at) {
   return {std::sqrt(sum.waves / all), std::sqrt(sum.rays / all)};
 }
 
-// The series is the whole: both ends on one side of the axis and on either, in a guide with
-// corners, above and within its thermocline.
+// The terms and the flat waves are the whole: both ends on one side of the axis, and on either.
 TEST(Cycles, TermsAreTheWholeField) {
-  struct Case {
-    Water water;
-    Places at;
-    std::size_t terms;
-  };
-  for (const Case& c : {Case{channel(), {100.0, 1000.0, 1000.0, 48000.0, 48000.0, 1}, 6},
-                        {channel(), {100.0, 1500.0, 1600.0, 90000.0, 90000.0, 1}, 6},
-                        {channel(), {100.0, 700.0, 1500.0, 48000.0, 48000.0, 1}, 6},
-                        {summer(), {250.0, 50.0, 60.0, 10000.0, 10000.0, 1}, 60},
-                        {summer(), {1000.0, 30.0, 25.0, 3000.0, 3000.0, 1}, 60},
-                        {summer(), {500.0, 10.0, 70.0, 5000.0, 5000.0, 1}, 60}}) {
-    const CycleWaves cycles(c.water.ocean, c.at.frequency, c.at.source, c.at.receiver, c.at.last);
+  for (const Places& at : {Places{100.0, 1000.0, 1000.0, 48000.0, 48000.0, 1},
+                           {100.0, 1500.0, 1600.0, 90000.0, 90000.0, 1},
+                           {100.0, 700.0, 1500.0, 48000.0, 48000.0, 1}}) {
+    const Water water = channel();
+    const CycleWaves cycles(water.ocean, at.frequency, at.source, at.receiver, at.last);
     ASSERT_TRUE(cycles.affordable());
-    const std::vector<Complex> terms = cycles.terms(c.terms, c.at.last);
     Complex sum = 0.0;
     double energy = 0.0;
-    for (std::size_t n = 0; n < c.terms; ++n) sum += terms[n], energy += std::norm(terms[n]);
-    EXPECT_LT(std::abs(sum - terms.back()), 2e-3 * std::sqrt(energy)) << c.at.source;
-    // Nothing but what is too steep for the window: here nothing is, but in the guides.
-    if (c.water.limits.max_bottom_bounces == 0) {
-      EXPECT_LT(std::abs(sum - waves_at(c.water, c.at)[0]), 2e-3 * std::sqrt(energy));
-    }
+    for (const Complex& p : cycles.terms(6, at.last)) sum += p, energy += std::norm(p);
+    EXPECT_LT(std::abs(sum - waves_at(water, at)[0]), 2e-3 * std::sqrt(energy)) << at.source;
   }
 }
 

@@ -194,5 +194,28 @@ TEST(ImageField, IsChosenOnlyWhereItIsTheBeamsLimit) {
   EXPECT_NE(result.notes[0].find("stratified water"), std::string::npos) << result.notes[0];
 }
 
+// Images know no head wave, nor how a beam is displaced: where waves are let they come first,
+// unless walls reflect all angles alike. Where images stand for them the note says what it bounds.
+TEST(ImageField, GivesWayToWavesWhereAFloorDoesNotMirror) {
+  PropagationCase c = ideal_guide();
+  c.solver = FieldSolver::automatic;
+  EXPECT_FALSE(run(c).waves);
+  c.environment.bottom.material = FluidHalfSpace{};
+  EXPECT_TRUE(run(c).waves);
+  c.solver = FieldSolver::beams;
+  const PropagationResult images = run(c);
+  EXPECT_FALSE(images.waves);
+  ASSERT_EQ(images.notes.size(), 1U);
+  EXPECT_NE(images.notes[0].find("images left out are"), std::string::npos);
+  EXPECT_NE(images.notes[0].find("as plane waves are"), std::string::npos);
+  c.solver = FieldSolver::automatic;
+  c.frequency = 2e4;
+  c.receivers.ranges = {3e5};  // 6e6 wavenumbers of at least four layers
+  const PropagationResult dear = run(c);
+  EXPECT_FALSE(dear.waves);
+  ASSERT_EQ(dear.notes.size(), 2U);
+  EXPECT_NE(dear.notes[1].find("takes them"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace asdic::detail

@@ -58,6 +58,19 @@ TEST(SurfaceEnergy, CoherentLossOfAnIsotropicSea) {
   EXPECT_GE(high, 20);
 }
 
+// A vertical wavenumber is k at most, and waves longer than 2k scatter nothing into the water, so
+// that p₁ ≤ sin θ·(ακ²/β)·e^{−β/4κ²}, κ = kU²/g: nothing is left of calm seas and low frequencies.
+TEST(SurfaceEnergy, CalmSeasScatterNothing) {
+  constexpr double alpha = 8.1e-3, beta = 0.74, k = 0.3;
+  for (double kappa = 0.01; kappa < 0.5; kappa *= 1.005)
+    for (const double sine : {0.001, 0.01, 0.1, 0.3, 0.7, 1.0}) {
+      const double wind = std::sqrt(kappa * 9.81 / k) / 1.026;
+      const double most =
+          sine * alpha * kappa * kappa / beta * std::exp(-0.25 * beta / (kappa * kappa));
+      EXPECT_LE(scattering_exponent(sea_of(wind), sine, k), 1.01 * most + 1e-9) << kappa;
+    }
+}
+
 // Exact surfaces are one-dimensional, of waves up to 0.8k: the same integral along the sound lies
 // within 0.15 dB of them, where Eckart's law is up to 0.26 dB off (four times too little at 2°). A
 // run's sea is isotropic, the mean over bearings: of waves along the sound it is up to 0.2 dB short

@@ -59,11 +59,23 @@ TEST(ScattererTexture, PowerIsGammaDistributed) {
     const double mean = sum / n, variance = squares / n - mean * mean;
     EXPECT_NEAR(mean, 1.0, 4.9 * std::sqrt(1.0 / shape / n)) << shape;
     EXPECT_NEAR(variance * shape, 1.0, 0.15) << shape;
-    // One square, one texture.
-    EXPECT_EQ(texture_amplitude(statistics, Vec2(110.0, 20.0), 1, 9),
-              texture_amplitude(statistics, Vec2(190.0, 80.0), 1, 9));
-    EXPECT_NE(texture_amplitude(statistics, Vec2(110.0, 20.0), 1, 9),
-              texture_amplitude(statistics, Vec2(210.0, 20.0), 1, 9));
+    // One square, one texture: of places a metre apart 1 in 100 pairs have a side between them (of
+    // 200, no more than 9 but once in 10⁶), of places 100 m apart all.
+    int apart = 0;
+    for (int i = 0; i < 200; ++i) {
+      const double x = 37.0 * i, here = texture_amplitude(statistics, Vec2(x, 20.0), 1, 9);
+      if (texture_amplitude(statistics, Vec2(x + 1.0, 20.0), 1, 9) != here) ++apart;
+      EXPECT_NE(texture_amplitude(statistics, Vec2(x + 100.0, 20.0), 1, 9), here);
+    }
+    EXPECT_LE(apart, 9);
+    // Nor is the map's [0, 0] a corner: with other seeds it lies anywhere in its square, so that 1
+    // in 50 has one of two sides within a metre (of 300, no more than 20 but once in 10⁶).
+    int corners = 0;
+    for (std::uint64_t seed = 1; seed <= 300; ++seed)
+      if (texture_amplitude(statistics, Vec2(-0.5, -0.5), 1, seed) !=
+          texture_amplitude(statistics, Vec2(0.5, 0.5), 1, seed))
+        ++corners;
+    EXPECT_LE(corners, 20);
   }
   EXPECT_EQ(texture_amplitude({}, Vec2(1.0, 2.0), 1, 9), 1.0);
 }

@@ -181,7 +181,7 @@ TEST(SharedSynthesis, NoBitChangesWhateverIsKept) {
       {"record", [](Scenario& s) { s.pings.recording_duration = 3.5; }},
       {"pressure", [](Scenario& s) { s.pings.samples = Samples::pressure; }},
       {"speed", [](Scenario& s) { s.targets[0].track.start.velocity.x() = -9.0; }},
-      {"wide band", [](Scenario& s) { s.propagation.wide_band = true; }}};
+      {"wide band", [](Scenario& s) { s.propagation.band = BandOfLosses::wide; }}};
   bool curved = false;
   for (const int threads : {1, 2, 7}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
@@ -363,7 +363,7 @@ TEST(SharedReverberation, PointsOfTheBandArePartOfTheKey) {
   const auto shared = std::make_shared<SharedPropagation>();
   Scenario s = with_every_field();
   EXPECT_FALSE(PingSimulator(s, shared).simulate(1).reuse.expected_level);
-  s.propagation.wide_band = true;
+  s.propagation.band = BandOfLosses::wide;
   for (const bool known : {false, true}) {
     const PingRecord record = PingSimulator(s, shared).simulate(1);
     EXPECT_EQ(record.reuse.expected_level, known);

@@ -166,16 +166,17 @@ TEST(ReverberationPoint, TheSoundGoesSmoothlyFromOneToTheOther) {
 }
 
 // The floor is 300 m below, the ping 0.2 s long: at 0.2 s sound has gone 300 m, there and back, of
-// which the way to a line 300 m away is all. Later the ellipse is wider than the floor is deep.
+// which the way to a line 300 m away is all. After a pulse of 2 s the ellipse is wider than the
+// floor is deep. Where the record begins does not matter: the sea is the same in it.
 TEST(NearestReverberation, IsTheSheetsHeightOrTheEllipsesEnd) {
   Scenario s = ship(line(5, 1.0, 0.0));
   const PingGeometry geometry(s, {}, 1);
   EXPECT_DOUBLE_EQ(nearest_reverberation(geometry, 0, 0.2, 1000.0).length, 300.0);
-  s.pings.recording_start = 2.0;
-  EXPECT_DOUBLE_EQ(nearest_reverberation(geometry, 0, 0.2, 1000.0).length,
+  EXPECT_DOUBLE_EQ(nearest_reverberation(geometry, 0, 2.0, 1000.0).length,
                    1499.0);  // 2 m to the middle
+  s.pings.recording_start = 2.0;
+  EXPECT_DOUBLE_EQ(nearest_reverberation(geometry, 0, 0.2, 1000.0).length, 300.0);
   s.reverberation.surface_scatters = true;
-  s.pings.recording_start = 0.0;
   EXPECT_DOUBLE_EQ(nearest_reverberation(geometry, 0, 0.1, 1000.0).length, 100.0);
   s.reverberation.enabled = false;
   EXPECT_EQ(nearest_reverberation(geometry, 0, 0.2, 1000.0).length, infinity);

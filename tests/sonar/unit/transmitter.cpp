@@ -99,5 +99,24 @@ TEST(Line, KeepsItsLengthAtOtherFrequencies) {
   EXPECT_NEAR(higher(std::asin(0.8 * sine)), at_centre(std::asin(sine)), 1e-12);
 }
 
+// The width that is told of a steered line is that of its pattern, walked from the axis to −3 dB on
+// either side. Beyond the vertical the pattern is that of the other bearing, sin(π − θ) = sin θ. A
+// step is 1e-4 degrees; the constants u₃ have ten digits. 7 degrees at the vertical are 40.
+TEST(Line, IsAsWideAsItsPatternWhenItIsSteered) {
+  for (const Taper taper : {Taper::hann, Taper::rectangular})
+    for (const double elevation : {0.0, 30.0, -50.0, 80.0, 88.0, 90.0, -90.0}) {
+      const LineBeam line{.taper = taper, .beamwidth = radians(7.0)};
+      const BeamPattern pattern({.elevation = radians(elevation), .beam = line}, wavelength, c);
+      const auto edge = [&](double step) {
+        double at = elevation;
+        while (pattern(std::asin(std::sin(radians(at)))) > std::sqrt(0.5)) at += step;
+        return at;
+      };
+      EXPECT_NEAR(degrees(line.steered_width(radians(elevation))), edge(1e-4) - edge(-1e-4), 3e-4)
+          << elevation;
+    }
+  EXPECT_NEAR(degrees(LineBeam{.beamwidth = radians(7.0)}.steered_width(0.5 * pi)), 40.2, 0.1);
+}
+
 }  // namespace
 }  // namespace asdic::detail

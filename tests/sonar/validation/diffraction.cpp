@@ -6,7 +6,7 @@
 
 #include "raytrace/propagation.h"
 #include "raytrace/waves/diffraction.h"
-#include "sonar/echoes/wave_response.h"
+#include "sonar/echoes/leg_response.h"
 #include "sonar/ping/ping.h"
 #include "sonar/warnings/warnings.h"
 #include "support/csv.h"
@@ -144,7 +144,7 @@ TEST(Diffraction, AWideBandHasTheWavesAtEveryFrequency) {
   for (const bool wide : {true, false}) {
     Scenario s = under_the_layer(500.0);
     s.pulse.waveform = Lfm{400.0, 600.0};
-    s.propagation.wide_band = wide;
+    s.propagation.band = wide ? BandOfLosses::wide : BandOfLosses::narrow;
     s.noise.law = WhiteNoise{-200.0};
     PingSimulator simulator(s);
     const PingRecord record = simulator.sound(1);
@@ -182,13 +182,13 @@ TEST(Diffraction, AWideBandHasTheWavesAtEveryFrequency) {
 TEST(Diffraction, AResponseIsSampledAsOftenAsItTurns) {
   const auto of_delay = [](double seconds) {
     return sampled_response(500.0, 100.0, 1e-3, 33, [&](double f) {
-      return 1.0 + std::polar(0.5, 2.0 * pi * f * seconds);
+      return std::vector{1.0 + std::polar(0.5, 2.0 * pi * f * seconds)};
     });
   };
   const SampledResponse slow = of_delay(0.002), fast = of_delay(0.1);
   EXPECT_LE(slow.values.size(), 9U);
   EXPECT_LT(slow.error, 1e-3);
-  EXPECT_NEAR(std::abs(slow.at(437.0) - (1.0 + std::polar(0.5, 2.0 * pi * 0.874))), 0.0, 1e-3);
+  EXPECT_NEAR(std::abs(slow.at(437.0)[0] - (1.0 + std::polar(0.5, 2.0 * pi * 0.874))), 0.0, 1e-3);
   EXPECT_EQ(fast.values.size(), 33U);
   EXPECT_GT(fast.error, 0.03);
 }

@@ -165,7 +165,7 @@ TEST(PassingShip, IsReceivedWithTheLossesOfEveryFrequency) {
   const Vec3 array = array_at(s, 0, 0.0).position, ship = s.interferers[0].track.start.position;
   const double range = (array - ship).head<2>().norm();
   const auto worst = [&](bool wide) {
-    s.propagation.wide_band = wide;
+    s.propagation.band = wide ? BandOfLosses::wide : BandOfLosses::narrow;
     const PingRecord record = received(s, 0, n);
     const ComplexFft<double> fft(n);
     FftBuffer<std::complex<double>> x(n);
@@ -232,7 +232,7 @@ TEST(PassingShip, OverARoughSeaHasThePowerOfItsPaths) {
   const std::size_t n = 24000;
   const ComplexFft<double> fft(n);
   for (const bool wide : {false, true}) {
-    s.propagation.wide_band = wide;
+    s.propagation.band = wide ? BandOfLosses::wide : BandOfLosses::narrow;
     double power = 0.0;
     constexpr int records = 16;
     for (int seed = 1; seed <= records; ++seed) {
@@ -312,7 +312,7 @@ TEST(PassingShip, HasTheSameBitsInWhateverPartsAStreamIsCut) {
     Scenario s = stream();
     if (rough) s.environment.surface.roughness.rms_height = 0.5;
     s.pings.samples = kind;
-    s.propagation.wide_band = wide;
+    s.propagation.band = wide ? BandOfLosses::wide : BandOfLosses::narrow;
     const std::size_t n = 9000;
     const PingRecord whole = received(s, 3000, n);
     const std::size_t width = whole.recording.components();

@@ -88,18 +88,15 @@ Received receive(const Scenario& s, std::size_t most_pairs) {
   if (!received.echoes.at_phones.empty()) gridded = received.echoes.at_phones;
   gridded.insert(gridded.end(), received.echoes.scattered.begin(), received.echoes.scattered.end());
   if (received.echoes.many) gridded.clear();
-  const bool wide = s.propagation.wide_band;
-  received.sound = wide ? wide_band_sound(context, s.transmitters[0], gridded, received.echoes.legs,
-                                          phones, recording, max_doppler)
-                        : narrow_band_sound(synthesizer, gridded, phones);
+  const bool wide = s.propagation.band == BandOfLosses::wide;
+  received.sound =
+      wide ? wide_band_sound(context, s.transmitters[0], gridded, phones, recording, max_doppler)
+           : narrow_band_sound(synthesizer, gridded, phones);
   if (const auto& many = received.echoes.many) {
     std::vector<BandPart> parts;
-    if (wide) {
-      const PulseBand band(context, s.transmitters[0], recording, max_doppler);
-      const BandNodes nodes = band.nodes(c * many->last);
-      for (std::size_t k = 0; k < nodes.frequencies.size(); ++k)
-        parts.push_back(band.part(nodes, k));
-    }
+    if (wide)
+      parts = band_parts(context, s.transmitters[0], received.echoes.echoes, c * many->last,
+                         recording, max_doppler);
     const Baseband more =
         two_step_echo(context, *many, {phones, many->at_phones}, recording, max_doppler, parts);
     if (more.channels > 0) add_resampled(more, received.sound);
@@ -216,7 +213,7 @@ TEST(TwoStepEcho, IsWhatPairsAreForALongPulse) {
 TEST(TwoStepEcho, IsWhatPairsAreAcrossTheBand) {
   Scenario s = guide(100.0);
   s.environment.absorption = Thorp{};
-  s.propagation.wide_band = true;
+  s.propagation.band = BandOfLosses::wide;
   s.pulse.waveform = Lfm{9000.0, 13000.0};
   s.pulse.duration = 0.02;
   s.pings.sample_rate = 40000.0;

@@ -52,7 +52,7 @@ Scenario wide() {
   s.pings.sample_rate = 20000.0;
   s.pings.recording_start = 5.0;
   s.pings.recording_duration = 0.6;
-  s.propagation.wide_band = true;
+  s.propagation.band = BandOfLosses::wide;
   return s;
 }
 
@@ -96,7 +96,7 @@ double error_db(const Scenario& s) {
 TEST(WideBand, IsTheSpectrumTimesTheResponse) {
   Scenario s = wide();
   EXPECT_LT(error_db(s), -65.0);
-  s.propagation.wide_band = false;
+  s.propagation.band = BandOfLosses::narrow;
   EXPECT_GT(error_db(s), -30.0);
 }
 
@@ -106,7 +106,7 @@ TEST(WideBand, ChangesNothingWhereNothingDependsOnFrequency) {
   s.environment.absorption = NoAbsorption{};
   s.transmitters[0] = {.source_level_db = 200.0, .beam = LineBeam{.taper = Taper::omnidirectional}};
   const PingRecord narrow = PingSimulator(s).sound(1);
-  s.propagation.wide_band = true;
+  s.propagation.band = BandOfLosses::wide;
   const PingRecord wide = PingSimulator(s).sound(1);
   ASSERT_EQ(narrow.pressure.size(), wide.pressure.size());
   for (std::size_t i = 0; i < wide.pressure.size(); ++i)
@@ -287,7 +287,7 @@ TEST(WideBand, KinksAreGivenMorePointsAndWhatIsMissedIsSaid) {
 TEST(WideBand, ReverberationOfAPing) {
   Scenario s = wide_sea();
   s.pings.recording_duration = 2.5;
-  s.propagation.wide_band = true;
+  s.propagation.band = BandOfLosses::wide;
   const auto run = [](const Scenario& scenario, std::size_t threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     return PingSimulator(scenario).sound(1).pressure;
@@ -299,9 +299,9 @@ TEST(WideBand, ReverberationOfAPing) {
   s.reverberation.surface = ScatteringTable{};
   for (const std::size_t most : {4'000'000U, 1000U}) {  // scatterers, sectors
     s.reverberation.most_returns = most;
-    s.propagation.wide_band = true;
+    s.propagation.band = BandOfLosses::wide;
     const auto wide = run(s, 2);
-    s.propagation.wide_band = false;
+    s.propagation.band = BandOfLosses::narrow;
     const auto narrow = run(s, 2);
     float largest = 0.0F, worst = 0.0F;
     for (std::size_t i = 0; i < wide.size(); ++i) {

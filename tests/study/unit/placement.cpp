@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "core/error.h"
+#include "core/memory_budget.h"
 #include "core/random.h"
 #include "io/files/output_file.h"
 #include "io/scenario/scenario_reader.h"
@@ -142,6 +143,23 @@ class PlacementOfSensors : public ::testing::Test {
   }
   support::TemporaryDirectory folder_;
 };
+
+// Five maps of 81 cells in 20 000 draws are 32 MB and more: refused before any is made.
+TEST_F(PlacementOfSensors, MapsKeepToRunMemory) {
+  const std::string head =
+      "scenario = \"buoy.toml\"\nsensors = 2\nmap_error = \"cells\"\njudging_draws = 2\n";
+  try {
+    static_cast<void>(
+        place_sensors(read(head + "draws = 20000\n", grids, {"run.memory=\"20 MB\""})));
+    ADD_FAILURE() << "32 MB of 20 MB";
+  } catch (const MemoryError& error) {
+    EXPECT_GT(error.needed(), 32e6);
+    EXPECT_NE(std::string(error.what()).find("placement.draws"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("run.memory"), std::string::npos) << error.what();
+  }
+  const PlacementPlan within = read(head + "draws = 20\n", grids, {"run.memory=\"20 MB\""});
+  EXPECT_EQ(place_sensors(within).choice.best.size(), 2U);
+}
 
 // Over a slope every place has a map of its own. The shallow west has no room for the buoy at
 // [-3000, 0], nor all cells water for the target.

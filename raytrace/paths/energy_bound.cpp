@@ -1,0 +1,82 @@
+#include "raytrace/paths/energy_bound.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "core/error.h"
+#include "core/units.h"
+
+namespace asdic::detail {
+namespace {
+
+constexpr double margin = 4.0;
+
+double intensity(const Arrival& path) { return std::norm(path.amplitude) + path.scattered; }
+
+/// sin² of the steepest wave that the water turns, at the slowest depth.
+double steepest_sine2(const Environment& ocean) noexcept {
+  double slow = std::numeric_limits<double>::infinity(), fast = 0.0;
+  const auto look = [&](double depth) {
+    const double c = ocean.water.at(depth).c;
+    slow = std::min(slow, c);
+    fast = std::max(fast, c);
+  };
+  constexpr int parts = 16;  // between the boundaries, for laws without samples
+  for (int i = 0; i <= parts; ++i)
+    look(std::lerp(ocean.surface.depth, ocean.bottom.depth, double(i) / parts));
+  for (const double depth : ocean.water.depths())
+    if (depth > ocean.surface.depth && depth < ocean.bottom.depth) look(depth);
+  return (1.0 - slow / fast) * (1.0 + slow / fast);
+}
+
+[[noreturn]] void tell(const Arrivals& paths, const LegEnds& ends, double distance, double sum,
+                       double most) {
+  const auto loudest =
+      std::max_element(paths.begin(), paths.end(), [](const Arrival& a, const Arrival& b) {
+        return intensity(a) < intensity(b) ||
+               (!std::isnan(intensity(a)) && std::isnan(intensity(b)));
+      });
+  const double spherical = 1.0 / (distance * distance);
+  char text[512];
+  std::snprintf(
+      text, sizeof text,
+      "a path louder than energy allows, which is a fault of this program: %.6g Hz, %.6g m at "
+      "depths of %.6g and %.6g m, all %zu paths together %.1f dB over spherical spreading, at most "
+      "%.1f dB are possible; the loudest, launched at %.4g deg with %d surface and %d bottom "
+      "bounces after %.6g s, has %.1f dB, and %.1f dB scattered, re 1 m",
+      ends.frequency, ends.range, ends.source_depth, ends.receiver_depth, paths.size(),
+      db_from_power(sum / spherical), db_from_power(most / spherical),
+      degrees(loudest->launch_elevation), loudest->surface_bounces, loudest->bottom_bounces,
+      loudest->delay, db_from_power(std::norm(loudest->amplitude)),
+      db_from_power(loudest->scattered));
+  throw RunError(text);
+}
+
+}  // namespace
+
+double most_intensity(const Environment& ocean, const LegEnds& ends) noexcept {
+  const double d = std::hypot(ends.range, ends.receiver_depth - ends.source_depth);
+  const double k = 2.0 * pi * ends.frequency / sound_speed(ocean, 0.0, ends.source_depth).c;
+  const double half_wave = pi / k;
+  const double thickness =
+      ends.layered ? std::max(ocean.bottom.depth - ocean.surface.depth, half_wave) : half_wave;
+  const double sine2 = ends.layered ? steepest_sine2(ocean) : 1.0;
+  const double gain = 1.0 + 8.0 / pi * k * d * sine2 + pi * d / thickness;
+  return margin / (d * d) * (ends.in_volume ? gain * gain : gain);
+}
+
+void ensure_bounded(const Arrivals& paths, const Environment& ocean, const LegEnds& ends) {
+  if (paths.empty()) return;
+  const double d = std::hypot(ends.range, ends.receiver_depth - ends.source_depth);
+  if (!(d > 0.0)) return;
+  double sum = 0.0;
+  for (const Arrival& path : paths) sum += intensity(path);
+  // Hardly any leg is louder than spherical spreading: the bound itself is then not asked for.
+  if (sum * d * d <= margin) return;
+  const double most = most_intensity(ocean, ends);
+  if (!(sum <= most)) tell(paths, ends, d, sum, most);
+}
+
+}  // namespace asdic::detail

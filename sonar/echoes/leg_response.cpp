@@ -1,0 +1,188 @@
+#include "sonar/echoes/leg_response.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/geometry.h"
+#include "raytrace/ocean/boundary.h"
+#include "raytrace/ocean/roughness.h"
+
+namespace asdic::detail {
+namespace {
+
+/// Whether what it reflects is a function of frequency.
+bool changes_with_frequency(const Boundary& boundary) {
+  const auto depends = [](const BoundaryMaterial& material) {
+    return depends_on_frequency(material);
+  };
+  return !boundary.roughness.smooth() || depends(boundary.material) ||
+         (boundary.shape && std::any_of(boundary.shape->materials().begin(),
+                                        boundary.shape->materials().end(), depends));
+}
+
+/// Of the vertical plane through both ends.
+std::shared_ptr<const EigenraySolver> solver_of(const PropagationPaths& paths, const MetLeg& leg) {
+  const Separation way = separation(leg.from, leg.to);
+  return paths.solver(paths.plane(leg.from, way.bearing, way.range));
+}
+
+/// What all bounces of a path leave at a frequency.
+std::complex<double> reflected(const Environment& ocean, const Arrival& path, double frequency) {
+  std::complex<double> product = 1.0;
+  for (const Bounce& bounce : path.bounces) {
+    const Boundary& boundary =
+        bounce.boundary == BoundaryKind::surface ? ocean.surface : ocean.bottom;
+    if (!changes_with_frequency(boundary)) continue;
+    const double depth = boundary.depth_at(bounce.range);
+    const double c = sound_speed(ocean, bounce.range, depth).c;
+    product *=
+        reflection_coefficient(
+            boundary.material_at(bounce.range), bounce.grazing,
+            {.speed = c, .density = ocean.water_density.at(depth), .frequency = frequency}) *
+        coherent_reflection(boundary.roughness, std::sin(bounce.grazing), 2.0 * pi * frequency / c);
+  }
+  return product;
+}
+
+/// Of the paths found at a frequency, the one that a path is there.
+const Arrival* become(const Arrivals& found, const Arrival& path, bool layered) {
+  // There is one diffracted arrival, from wherever it comes.
+  if (path.kind == ArrivalKind::diffracted)
+    for (const Arrival& one : found)
+      if (one.kind == ArrivalKind::diffracted) return &one;
+  return same_path(found, path, layered);
+}
+
+}  // namespace
+
+std::vector<std::complex<double>> SampledResponse::at(double frequency) const {
+  std::vector<std::complex<double>> sums(values.empty() ? 0 : values.front().size());
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const double share = nodes.basis(k, frequency);
+    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += share * values[k][i];
+  }
+  return sums;
+}
+
+SampledResponse sampled_response(
+    double centre, double half_width, double error, std::size_t most,
+    const std::function<std::vector<std::complex<double>>(double)>& responses) {
+  const auto place = [&](std::size_t k, std::size_t cells) {
+    return centre - half_width * std::cos(pi * static_cast<double>(k) / static_cast<double>(cells));
+  };
+  const auto size = [](const std::vector<std::complex<double>>& values) {
+    double sum = 0.0;
+    for (const std::complex<double>& value : values) sum += std::norm(value);
+    return std::sqrt(sum);
+  };
+  SampledResponse known{.nodes = {centre, half_width, {}}, .values = {}};
+  for (std::size_t k = 0; k <= 2; ++k) {
+    known.nodes.frequencies.push_back(place(k, 2));
+    known.values.push_back(responses(known.nodes.frequencies.back()));
+  }
+  for (std::size_t cells = 4;; cells *= 2) {
+    SampledResponse finer{.nodes = {centre, half_width, {}}, .values = {}};
+    double worst = 0.0, greatest = 0.0;
+    for (std::size_t k = 0; k <= cells; ++k) {
+      const double f = place(k, cells);
+      const bool before = k % 2 == 0;
+      finer.nodes.frequencies.push_back(f);
+      finer.values.push_back(before ? known.values[k / 2] : responses(f));
+      const std::vector<std::complex<double>>& value = finer.values.back();
+      greatest = std::max(greatest, size(value));
+      if (before) continue;
+      std::vector<std::complex<double>> off = known.at(f);
+      for (std::size_t i = 0; i < off.size(); ++i) off[i] -= value[i];
+      worst = std::max(worst, size(off));
+    }
+    finer.error = greatest > 0.0 ? worst / greatest : 0.0;
+    known = std::move(finer);
+    if (known.error <= error || 2 * cells + 1 > most) return known;
+  }
+}
+
+bool MetLeg::by_waves() const noexcept {
+  return std::any_of(paths.begin(), paths.end(),
+                     [](const Arrival& path) { return path.kind != ArrivalKind::ray; });
+}
+
+PathOnLeg path_on_leg(const std::shared_ptr<const MetLeg>& known, std::size_t path,
+                      const Vec3& from, const MetPath& met) {
+  constexpr double periods = 2.0;  // as waves keep their amplitude where a path is followed
+  if (met.path.kind == ArrivalKind::ray ||
+      std::abs(met.path.delay - known->paths[path].delay) * known->frequency < periods)
+    return {known, path};
+  return {std::make_shared<const MetLeg>(MetLeg{.from = from,
+                                                .to = met.way.end.position,
+                                                .paths = {met.path},
+                                                .frequency = known->frequency,
+                                                .limits = known->limits}),
+          0};
+}
+
+bool changes_with_frequency(const PropagationPaths& paths, const MetLeg& leg) {
+  if (leg.by_waves()) return true;
+  if (paths.volume() != nullptr) return false;  // bounces do not tell where they are
+  const auto solver = solver_of(paths, leg);
+  const bool surface = changes_with_frequency(solver->environment().surface),
+             bottom = changes_with_frequency(solver->environment().bottom);
+  return std::any_of(leg.paths.begin(), leg.paths.end(), [&](const Arrival& path) {
+    return (surface && path.surface_bounces > 0) || (bottom && path.bottom_bounces > 0);
+  });
+}
+
+std::vector<std::complex<double>> amplitudes_at(const PropagationPaths& paths, const MetLeg& leg,
+                                                double frequency) {
+  const double f = std::max(1.0, frequency);
+  std::vector<std::complex<double>> amplitudes;
+  if (!leg.by_waves()) {
+    const auto solver = solver_of(paths, leg);
+    for (const Arrival& path : leg.paths) {
+      const std::complex<double> at_centre = reflected(solver->environment(), path, leg.frequency);
+      amplitudes.push_back(at_centre == 0.0 ? path.amplitude
+                                            : path.amplitude / at_centre *
+                                                  reflected(solver->environment(), path, f));
+    }
+    return amplitudes;
+  }
+  const Arrivals found = paths.find(leg.from, leg.to, f, leg.limits);
+  for (const Arrival& path : leg.paths) {
+    Arrivals followed;
+    if (path.kind == ArrivalKind::diffracted)  // also where rays get there at that frequency
+      followed = paths.follow(std::span(&path, 1), leg.from, leg.to, f, leg.limits);
+    const Arrival* same = become(followed.empty() ? found : followed, path, paths.layered());
+    if (same == nullptr) {  // too faint there
+      amplitudes.emplace_back(0.0);
+      continue;
+    }
+    const double cycles = std::fmod(f * (same->delay - path.delay), 1.0);
+    amplitudes.push_back(same->amplitude * std::polar(1.0, -2.0 * pi * cycles));
+  }
+  return amplitudes;
+}
+
+SampledResponse leg_response(const PropagationPaths& paths, const MetLeg& leg, double centre,
+                             double half_width) {
+  return sampled_response(centre, half_width, leg_response_error,
+                          leg.by_waves() ? most_wave_frequencies : most_ray_frequencies,
+                          [&](double f) { return amplitudes_at(paths, leg, f); });
+}
+
+bool too_narrow_to_change(const MetLeg& leg, double half_width, double least) {
+  // By itself an amplitude falls as e^{−10·…} of some power of frequency at most. Waves of one term
+  // have the delays of its rays, which have two turns or bounces more at most.
+  constexpr double steepest = 10.0;
+  if (steepest * half_width > least * leg.frequency) return false;
+  const auto vertices = [](const Arrival& path) {
+    return path.surface_bounces + path.bottom_bounces + path.upper_turns + path.lower_turns;
+  };
+  for (const Arrival& path : leg.paths)
+    for (const Arrival& other : leg.paths)
+      if (path.kind != ArrivalKind::ray && std::abs(vertices(path) - vertices(other)) <= 2 &&
+          2.0 * pi * half_width * std::abs(path.delay - other.delay) > least)
+        return false;
+  return true;
+}
+
+}  // namespace asdic::detail

@@ -1,0 +1,82 @@
+// No path is louder than energy allows, and none that is right is refused.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+#include <limits>
+
+#include "core/error.h"
+#include "core/units.h"
+#include "raytrace/paths/energy_bound.h"
+#include "support/depth_modes.h"
+
+namespace asdic::detail {
+namespace {
+
+const LegEnds ends{
+    .source_depth = 5.0, .receiver_depth = 54.0, .range = 12945.7, .frequency = 3500.0};
+
+Environment shelf() {
+  const std::vector<double> depth = {0.0, 179.0}, speed = {1480.0, 1484.0};
+  Environment ocean{.water = SoundSpeedProfile::table(depth, speed, Interpolation::c_linear)};
+  ocean.bottom = {.depth = 179.0, .material = FluidHalfSpace{}};
+  return ocean;
+}
+
+// A deliberate fault: one path 100 dB over spherical spreading, or what is scattered about it, or
+// no number at all. The message has the numbers.
+TEST(EnergyBound, RefusesWhatIsLouder) {
+  const Arrival right{.amplitude = 1.0 / 13000.0, .scattered = 1.0 / (13000.0 * 13000.0)};
+  EXPECT_NO_THROW(ensure_bounded({right, right}, shelf(), ends));
+  Arrival loud = right, scattered = right, nothing = right;
+  loud.amplitude *= 1e5;
+  scattered.scattered *= 1e10;
+  nothing.amplitude = std::numeric_limits<double>::quiet_NaN();
+  for (const Arrival& wrong : {loud, scattered, nothing})
+    EXPECT_THROW(ensure_bounded({right, wrong, right}, shelf(), ends), RunError);
+  try {
+    ensure_bounded({right, loud}, shelf(), ends);
+    FAIL();
+  } catch (const RunError& error) {
+    for (const char* part : {"3500 Hz", "12945.7 m", "100.0 dB over", "at most 4", "17.7 dB"})
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+  }
+}
+
+// Finite and of some tens of decibels over spherical spreading.
+TEST(EnergyBound, IsFinite) {
+  const double d2 = ends.range * ends.range;
+  EXPECT_NEAR(db_from_power(most_intensity(shelf(), ends) * d2), 40.0, 10.0);
+  LegEnds slopes = ends;
+  slopes.layered = false;
+  EXPECT_LT(db_from_power(most_intensity(shelf(), slopes) * d2), 65.0);
+}
+
+// In c = c₀·cosh(az) all rays from the axis meet again after each π/a: the greatest focus there is.
+// Its modes, by finite differences and in phase, stay below the bound and come within 15 dB of it.
+TEST(EnergyBound, LetsAPerfectFocusPass) {
+  const double a = 2e-4, axis = 1500.0, f = 100.0, omega = 2.0 * pi * f;
+  const auto speed = [&](double z) { return 1500.0 * std::cosh(a * (z - axis)); };
+  std::vector<double> depth, speeds;
+  for (double z = 0.0; z <= 3000.0; z += 50.0) depth.push_back(z), speeds.push_back(speed(z));
+  Environment ocean{.water = SoundSpeedProfile::table(depth, speeds, Interpolation::spline)};
+  ocean.bottom = {.depth = 3000.0, .material = FluidHalfSpace{}};
+  const auto modes = support::depth_modes(
+      f, 3000.0, false, 2000, speed, [](double) { return 1.0; }, omega / speed(0.0),
+      omega / 1499.0);
+  for (int n = 1; n <= 4; ++n) {
+    const double range = n * pi / a;
+    std::complex<double> sum = 0.0;
+    for (std::size_t m = 0; m < modes.wavenumber.size(); ++m) {
+      const double k = modes.wavenumber[m], psi = modes.at(m, axis);
+      sum += std::sqrt(2.0 * pi / (range * k)) * psi * psi * std::polar(1.0, -k * range);
+    }
+    const double bound = most_intensity(
+        ocean, {.source_depth = axis, .receiver_depth = axis, .range = range, .frequency = f});
+    EXPECT_LT(std::norm(sum), bound) << n;
+    EXPECT_GT(std::norm(sum), power_from_db(-15.0) * bound) << n;
+  }
+}
+
+}  // namespace
+}  // namespace asdic::detail

@@ -1,0 +1,160 @@
+// Rays that hardly leave the level, between depths that are equal, almost equal and a few metres
+// apart.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "raytrace/paths/eigenrays.h"
+
+namespace asdic::detail {
+namespace {
+
+constexpr PathLimits one_bounce{.max_surface_bounces = 1, .max_bottom_bounces = 1};
+constexpr PathLimits in_water{.max_surface_bounces = 0, .max_bottom_bounces = 0};
+
+/// Differences of two depths, from one bit of 50 m to metres.
+std::vector<double> differences() {
+  std::vector<double> all = {0.0};
+  for (const double d : {7.2e-15, 1e-12, 1e-9, 5e-8, 1.01e-7, 3e-7, 9.9e-7, 1.01e-6, 1e-5, 1e-4,
+                         1e-3, 1e-2, 0.05, 0.1, 0.3, 1.0, 3.0})
+    for (const double sign : {1.0, -1.0}) all.push_back(sign * d);
+  return all;
+}
+
+// Truth: images. The direct way is √(r² + d²) long; four more go by one bounce off either boundary.
+TEST(LevelPaths, InIsovelocityWaterTheDirectRayIsThereWhateverTheDifference) {
+  Environment ocean;
+  ocean.water = SoundSpeedProfile::isovelocity(1500.0);
+  ocean.bottom = {.depth = 200.0, .material = FluidHalfSpace{}};
+  const EigenraySolver solver(ocean);
+  for (const double depth : {0.0, 50.1, 200.0})
+    for (const double range : {3.0, 1200.0, 20e3, 300e3})
+      for (const double apart : differences()) {
+        const double there = depth + apart;
+        if (there < 0.0 || there > 200.0) continue;
+        const Arrivals paths = solver.find(depth, there, range, 4000.0, one_bounce);
+        const double length = std::hypot(range, apart);
+        const auto direct = std::count_if(paths.begin(), paths.end(),
+                                          [](const Arrival& a) { return a.bounces.empty(); });
+        ASSERT_EQ(direct, 1) << depth << ' ' << range << ' ' << apart;
+        const auto& found = *std::find_if(paths.begin(), paths.end(),
+                                          [](const Arrival& a) { return a.bounces.empty(); });
+        EXPECT_NEAR(found.delay, length / 1500.0, 1e-9) << depth << ' ' << range << ' ' << apart;
+        // A miss of 0.01 mm of 3 m, and rays of 1e-9 rad, whose q is known to 1e-6 of itself.
+        EXPECT_NEAR(found.spreading * length, 1.0, 1e-5) << depth << ' ' << range << ' ' << apart;
+        EXPECT_NEAR(found.launch_elevation, -std::atan2(apart, range),
+                    1e-5 * std::abs(apart) / range + 1e-15);
+        if (depth == 50.1) {
+          EXPECT_EQ(paths.size(), 5U) << range << ' ' << apart;
+        }
+      }
+}
+
+/// Depth under the source at a range, of a ray by Runge and Kutta's fourth-order steps.
+struct Followed {
+  double depth, slope;
+};
+Followed follow(const SoundSpeedProfile& water, double depth, double slope, double range,
+                double step) {
+  const auto bend = [&](double z, double p) {
+    const SoundSpeed c = water.at(z);
+    return -(1.0 + p * p) * c.dc_dz / c.c;
+  };
+  const auto steps = static_cast<int>(std::ceil(range / step));
+  const double h = range / steps;
+  double z = depth, p = slope;
+  for (int i = 0; i < steps; ++i) {
+    const double k1 = bend(z, p), k2 = bend(z + 0.5 * h * p, p + 0.5 * h * k1),
+                 k3 = bend(z + 0.5 * h * (p + 0.5 * h * k1), p + 0.5 * h * k2),
+                 k4 = bend(z + h * (p + 0.5 * h * k2), p + h * k3);
+    z += h * (p + h / 6.0 * (k1 + k2 + k3));
+    p += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+  }
+  return {z, p};
+}
+
+struct FlatRoot {
+  double slope, q;
+};
+/// The rays of less than `most` that come to a depth: a fan that is even and, towards the level,
+/// even in the logarithm; roots by halving.
+std::vector<FlatRoot> brute_force(const SoundSpeedProfile& water, double source, double receiver,
+                                  double range, double step, double most) {
+  std::vector<double> fan = {0.0};
+  for (double s = most; s > 1e-3 * std::abs(receiver - source) / range && s > 1e-14; s *= 0.9)
+    fan.insert(fan.end(), {s, -s});
+  for (int i = 1; i < 40; ++i) fan.insert(fan.end(), {most * i / 40.0, -most * i / 40.0});
+  std::sort(fan.begin(), fan.end());
+  const auto miss = [&](double slope) {
+    return follow(water, source, slope, range, step).depth - receiver;
+  };
+  std::vector<FlatRoot> found;
+  double before = miss(fan.front());
+  for (std::size_t i = 1; i < fan.size(); ++i) {
+    const double now = miss(fan[i]);
+    if ((now > 0.0) != (before > 0.0)) {
+      double low = fan[i - 1], high = fan[i];
+      for (int k = 0; k < 40; ++k) {
+        const double middle = 0.5 * (low + high);
+        ((miss(middle) > 0.0) == (before > 0.0) ? low : high) = middle;
+      }
+      const double off = 1e-4 * std::max(std::abs(low), 1e-3 * std::abs(receiver - source) / range);
+      found.push_back({low, (miss(low + off) - miss(low - off)) / (2.0 * off)});
+    }
+    before = now;
+  }
+  return found;
+}
+
+/// \param share  by which angle and q may be off
+void expect_flat_rays(const SoundSpeedProfile& water, double bottom, double source, double receiver,
+                      double range, double step, double share) {
+  constexpr double most = 2e-3;
+  Environment ocean;
+  ocean.water = water;
+  ocean.bottom = {.depth = bottom, .material = FluidHalfSpace{}};
+  Arrivals paths = EigenraySolver(ocean).find(source, receiver, range, 1000.0, in_water);
+  std::erase_if(paths, [](const Arrival& a) { return std::abs(a.launch_elevation) > most; });
+  std::sort(paths.begin(), paths.end(), [](const Arrival& a, const Arrival& b) {
+    return a.launch_elevation > b.launch_elevation;
+  });
+  const std::vector<FlatRoot> truth =
+      brute_force(water, source, receiver, range, step, std::tan(most));
+  const auto where = testing::Message()
+                     << "from " << source << " to " << receiver << " m, " << range << " m";
+  ASSERT_EQ(paths.size(), truth.size()) << where;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    EXPECT_NEAR(-paths[i].launch_elevation, truth[i].slope,
+                share * std::abs(truth[i].slope) + 1e-15)
+        << where;
+    EXPECT_NEAR(std::abs(paths[i].q), std::abs(truth[i].q), share * std::abs(truth[i].q)) << where;
+  }
+}
+
+// Where sin²θ is the difference of two speeds that are one but for rounding. A flat ray is the
+// parabola's but for the next order in its way a from the axis, a·c‴/c″ (1.5 m of 650 m), of which
+// three terms add up; from there on it is the search's, which knows sin² to 1e-8.
+TEST(LevelPaths, OnMunksAxisTheNearlyLevelRayIsThereWhateverTheDifference) {
+  const SoundSpeedProfile munk = SoundSpeedProfile::munk();
+  for (const double range : {1200.0, 20e3, 33e3, 60e3})
+    for (const double source : {1300.0, 1298.0})
+      for (const double apart : {1e-9, 1e-4, 1e-2, 0.05, 0.1, 0.3, 1.0, 3.0})
+        expect_flat_rays(munk, 5000.0, source, 1300.0 + apart, range, 200.0, 1e-2);
+}
+
+// An axis whose two sides bend differently, so that no parabola holds. Knots leave RK4 of the third
+// order: steps of 5 m change slopes by 1e-5 of themselves.
+TEST(LevelPaths, SoIsItOnTheAxisOfAPchipProfile) {
+  const SoundSpeedProfile water = SoundSpeedProfile::table(
+      std::vector{0.0, 50.0, 100.0, 150.0, 200.0},
+      std::vector{1520.0, 1500.0, 1490.0, 1493.0, 1500.0}, Interpolation::pchip);
+  for (const double range : {1200.0, 6000.0})
+    for (const double source : {100.0, 99.7})
+      for (const double apart : {1e-3, 1e-2, 0.1, 1.0})
+        expect_flat_rays(water, 200.0, source, 100.0 + apart, range, 5.0, 1e-2);
+}
+
+}  // namespace
+}  // namespace asdic::detail
