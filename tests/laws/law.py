@@ -75,10 +75,9 @@ def stratified(s):
     water = e["sound_speed"]
     if water["kind"] == "section":
         e["sound_speed"] = {"kind": "table", "depth": water["depth"], "speed": water["speed"][0]}
-    if "shape" in e["bottom"] or "area" in e:
-        e["bottom"].pop("shape", None)
-        e.pop("area", None)
-        e["bottom"]["depth"] = water_depth(s)
+    e["bottom"]["depth"] = water_depth(s)
+    e["bottom"].pop("shape", None)
+    e.pop("area", None)
     e.get("surface", {}).pop("shape", None)
     s["propagation"].pop("dimension", None)
     s["propagation"].pop("diffraction", None)

@@ -282,6 +282,7 @@ def stations(d, level, s, floor, top, hz, reach):
     span, wave = floor - top, 1500.0 / hz
     zs = place(d, level["source place"], water, floor, top)
     zt = place(d, level["target place"], water, floor, top, zs)
+    zt = min(max(zt, zs - 0.8 * reach), zs + 0.8 * reach)
     bearing = d.one_of(0.0, 30.0, 90.0, 217.0)
     away = math.sqrt(max(reach ** 2 - (zt - zs) ** 2, (0.3 * reach) ** 2))
     east, north = math.sin(math.radians(bearing)), math.cos(math.radians(bearing))
