@@ -255,7 +255,9 @@ def legs_are_waves(s, p):
     wave = depth / p("wavelengths", st.sampled_from([20.0, 35.0, 60.0]))
     hz = 1500.0 / wave
     s["pulse"] = {"kind": "cw", "frequency": hz, "duration": 20.0 / hz, "window": "hann"}
-    s["pings"] = {"recording_duration": 1.0, "samples": "baseband"}
+    s["pings"] = {"recording_duration": 1.0 + 20.0 / hz, "samples": "baseband"}
+    e.pop("biology", None)  # losses with depth are left to rays
+    e.pop("attenuation", None)
     a, b = s["platform"][0]["position"], s["target"][0]["position"]
     r = min(max(math.hypot(a[0] - b[0], a[1] - b[1]), depth), 15 * depth)
     s["propagation"] |= {"max_surface_bounces": "auto", "max_bottom_bounces": "auto"}
