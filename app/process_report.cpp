@@ -12,7 +12,7 @@ namespace asdic::detail::app {
 namespace {
 
 struct Totals {
-  int detections = 0, hits = 0, misses = 0, false_alarms = 0;
+  int detections = 0, hits = 0, misses = 0, not_detectable = 0, false_alarms = 0;
   int of_targets = 0, direct = 0, of_other_pings = 0;  ///< the detections that are no false alarms
 };
 
@@ -22,6 +22,8 @@ Totals totals(const ProcessedRun& run) {
     sum.detections += static_cast<int>(ping.array.result.detections.size());
     sum.hits += ping.score.hits;
     sum.misses += ping.score.misses;
+    for (const TargetScore& one : ping.score.targets)
+      sum.not_detectable += one.present && !one.detectable ? 1 : 0;
     sum.false_alarms += ping.score.false_alarms;
     for (const int owner : ping.score.owner) {
       sum.of_targets += owner >= 0 ? 1 : 0;
@@ -172,10 +174,12 @@ std::string process_report(const ProcessedRun& run, const Scenario& scenario, do
   if (sum.direct > 0) whose += fmt::format(", {} of the direct sound", sum.direct);
   if (sum.of_other_pings > 0) whose += fmt::format(", {} of other pings", sum.of_other_pings);
   text += fmt::format(
-      "{}: {} ({}, {}); targets with an echo in the time searched: {} found, {} missed; {}; {}\n",
+      "{}: {} ({}, {}); targets: {} found, {} missed, {} not detectable (no echo over the "
+      "threshold "
+      "in the time searched); {}; {}\n",
       count_of(pings, "ping"), count_of(static_cast<std::size_t>(sum.detections), "detection"),
       whose, count_of(static_cast<std::size_t>(sum.false_alarms), "false alarm"), sum.hits,
-      sum.misses, count_of(run.tracks.size(), "track"), duration(seconds));
+      sum.misses, sum.not_detectable, count_of(run.tracks.size(), "track"), duration(seconds));
   return text + alarms_text(run, sum) + notes_text(run) + limit_text(run, scenario);
 }
 
@@ -237,6 +241,7 @@ std::string process_json(const ProcessedRun& run, const Scenario& scenario,
                              {"of_other_pings", sum.of_other_pings},
                              {"hits", sum.hits},
                              {"misses", sum.misses},
+                             {"not_detectable", sum.not_detectable},
                              {"false_alarms", sum.false_alarms},
                              {"expected_false_alarms", {even.least, even.most}},
                              {"notes", run.notes},

@@ -52,7 +52,7 @@ int study_run(const StudyOptions& options) {
   order.run.stop = interrupt.token();
   std::optional<StudyProgress> progress(std::in_place, !options.quiet);
   const study::Realiser realiser(order.study);
-  const study::Work work = [&] {
+  study::Work work = [&] {
     std::optional<study::Work> made;  // what its levels lack takes a search
     try {
       until_stopped(interrupt.token(),
@@ -66,6 +66,7 @@ int study_run(const StudyOptions& options) {
   if (const std::string design = study::design_text(order.study);
       !options.quiet && !options.brief && !design.empty())
     print(design + '\n');
+  work.realise = study::watched(work, order.run.note);
   order.run.progress = [&](const study::Progress& p) { progress->update(p); };
   study::StudyOutcome outcome =
       options.join ? study::run_crew(work, order.run) : study::run_study(work, order.run);

@@ -11,6 +11,7 @@
 #include "app/console.h"
 #include "app/output.h"
 #include "app/study_progress.h"
+#include "app/warn.h"
 #include "core/error.h"
 #include "io/ping/provenance.h"
 #include "study/reader/study_reader.h"
@@ -176,8 +177,8 @@ int report(const StudyOrder& order, const study::StudyOutcome& outcome, bool qui
   if (outcome.damaged > 0)
     print(fmt::format("{} in the journal did not match their checksum and were made again\n",
                       count_of(outcome.damaged, "realisation")));
-  if (!outcome.warning.empty()) print("warning: " + outcome.warning + '\n');
-  for (const std::string& warning : outcome.found) print("warning: " + warning + '\n');
+  if (!outcome.warning.empty()) warn({outcome.warning});
+  warn(outcome.found);
   if (!outcome.written)
     throw RunError(
         there == 0
@@ -205,8 +206,9 @@ int report(const StudyOrder& order, const study::StudyOutcome& outcome, bool qui
     print(fmt::format("{} of them skipped; /faults in the file says why\n", outcome.skipped));
   if (outcome.estimate) print(estimate_text(*outcome.estimate) + '\n');
   if (outcome.left_out > 0)
-    print(fmt::format("{} left out of {}: it is not known there (NaN or infinite)\n",
-                      count_of(outcome.left_out, "realisation"), outcome.question));
+    print(fmt::format("{} left out of {}: it is not known there (NaN or infinite){}\n",
+                      count_of(outcome.left_out, "realisation"), outcome.question,
+                      outcome.unknown.empty() ? "" : ": " + outcome.unknown));
   for (const std::string& note : outcome.notes) print("note: " + note + '\n');
   if (order.run.until) print(until_text(outcome) + '\n');
   print(fmt::format("{}: {}{}\n", file,

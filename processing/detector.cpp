@@ -434,11 +434,19 @@ ExpectedAlarms expected_alarms(const DetectorResult& of) noexcept {
   const double set = of.cells * of.false_alarm_probability;
   const bool one = of.dopplers.size() == 1;
   const bool several = of.sub_bands > 1;  // a longer cell has more samples
-  const double least = (one || several ? 1.4 : 0.95) * (of.shaded ? 0.6 : 1.0),
+  // A peak that a louder one explains is no detection of its own, and that reaches over all
+  // filters: of so many independent cells, x of them over the threshold, (1 − e⁻ˣ)/x are the
+  // loudest.
+  const auto left = [&](double explained) {
+    const double x =
+        explained * of.false_alarm_probability * static_cast<double>(of.dopplers.size());
+    return x > 1e-6 ? -std::expm1(-x) / x : 1.0;
+  };
+  const double least = (one || several ? 1.4 : 0.65 * left(160.0)) * (of.shaded ? 0.6 : 1.0),
                most = of.rough  ? 6.0
                       : several ? 5.0
                       : one     ? 2.0
-                                : 1.3;
+                                : 1.6 * left(40.0);
   return {.least = least * set, .most = most * set};
 }
 

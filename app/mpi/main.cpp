@@ -86,6 +86,7 @@ int study_run(const StudyOptions& options, double silence, const study::mpi::Ses
   if (const std::string design = study::design_text(order->study);
       !options.quiet && session.rank() == 0 && !design.empty())
     print(design + '\n');
+  if (session.rank() == 0) work.realise = study::watched(work, order->run.note);
   study::StudyOutcome outcome;
   std::string said;
   {

@@ -153,7 +153,7 @@ def false_alarms(study) -> str:
     if study.false_alarms is None:
         return ""
     rows = []
-    for c in (c for c in study.columns if c.name.startswith("false_alarm")):
+    for c in (c for c in study.columns if c.name.startswith("false_alarm") and not c.name.endswith("_of_noise")):
         good = c.values[np.isfinite(c.values)]
         if good.size:
             known = np.isfinite(c.values)

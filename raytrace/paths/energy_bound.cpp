@@ -11,7 +11,7 @@
 namespace asdic::detail {
 namespace {
 
-constexpr double margin = 4.0;
+constexpr double margin = 64.0;
 
 double intensity(const Arrival& path) { return std::norm(path.amplitude) + path.scattered; }
 

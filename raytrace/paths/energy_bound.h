@@ -13,7 +13,7 @@ struct LegEnds {
 };
 
 /// Most that the paths of one leg may bring together, Σ(|A|² + scattered) of a unit source at 1 m
-/// [1/m² × 1 m²]: four times
+/// [1/m² × 1 m²]: 64 times
 ///
 ///   1/d² + (8/π)·k·s²/d + π/(d·H)
 ///

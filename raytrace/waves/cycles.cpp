@@ -44,14 +44,11 @@ CycleWaves::CycleWaves(const Environment& ocean, double frequency, double source
   fade_ = fade_radians / furthest;
   const double widest = std::sqrt(2.0 * column.largest_wavenumber() / furthest);
   least_slope_ = flattest_zones * widest * widest * widest;
-  const double upper = (source_is_upper_ ? column.at_source() : column.at_receiver()).slope,
-               lower = (source_is_upper_ ? column.at_receiver() : column.at_source()).slope;
-  // Across the slowest depth a ray that is horizontal at one end turns before the other, whatever
-  // the slopes: in a surface duct above a thermocline, say.
-  turns_ = column.slowest_is_between()  ? Turns::between
-           : upper > 0.0 && lower > 0.0 ? Turns::above
-           : upper < 0.0 && lower < 0.0 ? Turns::below
-                                        : Turns::between;
+  // Where a ray that is horizontal at one end turns: on that side of the slowest depth. Slopes do
+  // not tell, they are nothing where the speed is greatest.
+  turns_ = column.ends_are_above()   ? Turns::above
+           : column.ends_are_below() ? Turns::below
+                                     : Turns::between;
   affordable_ = double(column.layers()) * double(window_.count) <= most_cycle_steps;
   if (!affordable_) return;
   constexpr std::size_t piece = 16;
@@ -253,24 +250,19 @@ void put_waves(const EigenraySolver& solver, double source_depth, double receive
     const Branch branch = branch_of(ray);
     return plain->term_of(source_depth <= receiver_depth ? branch : reversed(branch));
   };
-  int first = 0, last = -1;
+  int last = -1;
   bool waterborne = false;
   std::vector<double> weights;  // [found] in the window of wavenumbers
-  std::size_t flattest = 0;     // of rays in it
   for (const Arrival& ray : found) {
     waterborne = waterborne || ray.bottom_bounces == 0;
     weights.push_back(plain->window().weight(omega * ray.horizontal_slowness));
     if (weights.back() < least_weight || !(std::norm(ray.amplitude) > 0.0)) weights.back() = 0.0;
     if (weights.back() == 0.0) continue;
-    const int term = term_of(ray);
-    const std::size_t here = weights.size() - 1;
-    if (last < 0 || ray.horizontal_slowness > found[flattest].horizontal_slowness) flattest = here;
-    first = last < 0 ? term : std::min(first, term);
-    last = std::max(last, term);
+    last = std::max(last, term_of(ray));
   }
   if (last < 0) return;
-  first = std::max(0, first - 1);
-  const std::size_t count = std::size_t(last) + 2;
+  const int flat_cycles = plain->flat_cycles(range);
+  const std::size_t count = std::size_t(std::max(last, flat_cycles)) + 2;
   std::map<std::pair<bool, bool>, std::vector<Complex>> known;
   const auto waves_without = [&](bool surface, bool bottom, std::size_t number) {
     std::vector<Complex>& there = known[{surface, bottom}];
@@ -297,19 +289,23 @@ void put_waves(const EigenraySolver& solver, double source_depth, double receive
   };
   std::map<int, WaveGroup> groups;
   // A term has so many turns at either side, or one more.
-  for (int term = first; term < int(count); ++term)
+  for (int term = 0; term < int(count); ++term)
     groups.emplace(term, group_of(std::size_t(term), term + 1));
-  // What there is of waves without rays goes to the next ones that have some.
-  const auto hand_over = [&](const WaveGroup& from, int to) {
-    const auto other = groups.find(to);
-    if (!from.rays.empty() || other == groups.end() || other->second.rays.empty()) return false;
-    other->second.lacking += from.lacking;
-    return true;
+  // What there is of waves without rays goes to the nearest that have some: the sum stays the
+  // waves', whichever rays were found.
+  const auto hand_over = [&](const WaveGroup& from, int term) {
+    const auto nearest =
+        std::min_element(groups.begin(), groups.end(), [&](const auto& a, const auto& b) {
+          const auto off = [&](const auto& group) {
+            return std::pair(group.second.rays.empty(), std::abs(group.first - term));
+          };
+          return off(a) < off(b);
+        });
+    if (from.rays.empty() && !nearest->second.rays.empty()) nearest->second.lacking += from.lacking;
   };
-  const WaveGroup flat = group_of(count, plain->flat_cycles(range));
-  hand_over(flat, term_of(found[flattest]));
-  for (const auto& [term, here] : groups)
-    if (!hand_over(here, term - 1)) hand_over(here, term + 1);
+  const WaveGroup flat = group_of(count, flat_cycles);
+  hand_over(flat, flat_cycles);
+  for (const auto& [term, here] : groups) hand_over(here, term);
   std::vector<Complex> amplitudes;
   for (const Arrival& ray : found) amplitudes.push_back(ray.amplitude);
   share(flat, found, errors, frequency, amplitudes);

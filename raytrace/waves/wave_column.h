@@ -62,14 +62,16 @@ class WaveColumn {
     std::complex<double> k2;
     double slope;
   };
-  [[nodiscard]] Squared at_source() const noexcept { return squared(source_edge_); }
-  /// Of the first.
-  [[nodiscard]] Squared at_receiver() const noexcept { return squared(edge_of_.front()); }
   [[nodiscard]] Squared at_slowest() const noexcept { return squared(slowest_edge_); }
-  /// Whether the slowest depth lies between the source and the first receiver.
-  [[nodiscard]] bool slowest_is_between() const noexcept {
+  /// Whether both ends, the source and the first receiver, lie above the slowest depth or the lower
+  /// one at it; or below it.
+  [[nodiscard]] bool ends_are_above() const noexcept {
     const auto [upper, lower] = std::minmax(source_edge_, edge_of_.front());
-    return upper < slowest_edge_ && slowest_edge_ < lower;
+    return upper < slowest_edge_ && lower <= slowest_edge_;
+  }
+  [[nodiscard]] bool ends_are_below() const noexcept {
+    const auto [upper, lower] = std::minmax(source_edge_, edge_of_.front());
+    return upper >= slowest_edge_ && lower > slowest_edge_;
   }
 
   [[nodiscard]] std::size_t layers() const noexcept { return layers_.size(); }

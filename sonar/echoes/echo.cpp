@@ -83,11 +83,13 @@ class EchoFinder {
     }
     if (many) {
       shorten_bounces(result.legs.front().arrivals);
-    } else if (!exact && context_.listens &&
-               !(plane_waves(result) && alike_at_phones(out, result.legs.back(), home.end))) {
+    } else if (const bool plane = exact || !context_.listens || plane_waves(result);
+               !plane || (!exact && context_.listens &&
+                          !alike_at_phones(out, result.legs.back(), home.end))) {
       TargetEchoes at_phones;
       for (std::size_t n = 0; n < phones_.size(); ++n)
-        pair_up(source, out, way_back(out, static_cast<int>(n)), at_phones);
+        pair_up(source, out, to_phone(out, static_cast<int>(n), result.legs.back(), plane),
+                at_phones);
       result.at_phones = std::move(at_phones.echoes);
       result.scattered = std::move(at_phones.scattered);
     }
@@ -123,10 +125,16 @@ class EchoFinder {
   /// \param home  at the reference point, there at a place
   [[nodiscard]] bool alike_at_phones(const Way& out, const Leg& home, const Kinematics& end) const {
     return is_alike_at_phones(context_, {home, end.position}, [&](int phone) -> ArrivedLeg {
-      // Over slopes rays are followed there; the amplitude of waves is to be found.
-      Way own = way_back(out, phone, layered_ ? std::span<const Arrival>() : home.arrivals);
+      Way own = to_phone(out, phone, home, true);
       return {std::move(own.leg), own.end.position};
     });
+  }
+
+  /// The way back to a phone. Over slopes rays are followed there, where it is `near`; the
+  /// amplitude of waves is to be found. \param home  at the reference point
+  [[nodiscard]] Way to_phone(const Way& out, int phone, const Leg& home, bool near) const {
+    return way_back(out, phone,
+                    near && !layered_ ? std::span(home.arrivals) : std::span<const Arrival>());
   }
 
   /// \param channel  phone that receives it; −1: the reference point

@@ -29,6 +29,7 @@
 #include "sonar/scenario/sampling.h"
 #include "sonar/scenario/transmitter.h"
 #include "sonar/synthesis/sound_synthesis.h"
+#include "sonar/synthesis/synthesis_bytes.h"
 #include "sonar/warnings/wave_warnings.h"
 
 namespace asdic::detail {
@@ -66,6 +67,14 @@ MemoryNeed two_step_need(const ManyEchoes& many, const Baseband& received) {
           .remedy =
               "a shorter record, fewer phones or numbers in propagation.max_surface_bounces and "
               "max_bottom_bounces"};
+}
+
+/// Of echoes that are received across the band: the sum so far.
+MemoryNeed band_need(const Synthesizer& synthesizer, std::size_t channels) {
+  return {.where = "propagation.band",
+          .what = "echoes across the band on " + std::to_string(channels) + " phones",
+          .bytes = static_cast<double>(channels) * synthesis_bytes(synthesizer, channels).row,
+          .remedy = "propagation.band = \"narrow\", fewer phones or a shorter record"};
 }
 
 }  // namespace
@@ -380,6 +389,9 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
     record.band = {static_cast<int>(band->points().size()), band->reached()};
   }
   budget.take(synthesis_need(filtered ? *filtered : synthesizer));
+  if (scenario_.propagation.band == BandOfLosses::automatic &&
+      std::find(wide.begin(), wide.end(), true) != wide.end())
+    budget.take(band_need(synthesizer, channels_of(scenario_)));
   const std::size_t samples =
       record.phones.size() * record.recording.samples * record.recording.components();
   record.pressure.reserve(samples);

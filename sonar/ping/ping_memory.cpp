@@ -42,7 +42,7 @@ MemoryNeed PingSimulator::synthesis_need(const Synthesizer& synthesizer) const {
   // sum so far. Those of several arrays are put under one another.
   double rows = static_cast<double>(channels);
   if (!scenario_.reverberation.enabled) rows = 0.0;
-  if (scenario_.propagation.band != BandOfLosses::narrow) rows += static_cast<double>(channels);
+  if (scenario_.propagation.band == BandOfLosses::wide) rows += static_cast<double>(channels);
   if (scenario_.arrays.size() > 1) rows += static_cast<double>(channels);
   return {.where = "pulse.duration",
           .what = "echoes and reverberation on " + std::to_string(channels) +

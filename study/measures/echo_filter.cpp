@@ -1,9 +1,12 @@
 #include "study/measures/echo_filter.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
+#include <cstdio>
 #include <functional>
+#include <map>
 #include <optional>
 
 #include "core/error.h"
@@ -37,6 +40,45 @@ const EchoPath* strongest(const PingRecord& record, int array, int target, int c
         (best == nullptr || echo.level_db > best->level_db))
       best = &echo;
   return best;
+}
+
+/// The cells of an echo: those in which the target's pairs of paths bring, as powers, a hundredth
+/// of what the loudest has or more. \param cell  [s]   \return cells after the strongest pair,
+/// rising; {0} where no path is
+std::vector<std::ptrdiff_t> cells_of(const PingRecord& record, int array, int target, double cell) {
+  constexpr double faintest = 0.01;
+  const EchoPath* loudest = strongest(record, array, target, Return::all_channels);
+  if (loudest == nullptr) return {0};
+  std::map<std::ptrdiff_t, double> powers;
+  double most = 0.0;
+  for (const EchoPath& echo : record.echoes) {
+    if (echo.array != array || echo.target != target ||
+        echo.received.channel != loudest->received.channel)
+      continue;
+    const double later = (echo.received.delay - loudest->received.delay) / cell;
+    double& power = powers[std::lround(later)];
+    power += power_from_db(echo.level_db);
+    most = std::max(most, power);
+  }
+  std::vector<std::ptrdiff_t> cells;
+  for (const auto& [at, power] : powers)
+    if (power >= faintest * most) cells.push_back(at);
+  return cells;
+}
+
+/// A cell of the matched filter's answers, 1/B [samples].
+std::ptrdiff_t cell_samples(const Pulse& pulse, double sample_rate) {
+  return static_cast<std::ptrdiff_t>(std::ceil(sample_rate / noise_bandwidth(pulse)));
+}
+
+/// u = −ln P of the highest of n independent cells, P the probability that without an echo one of
+/// them is as high. \param level  its own u
+double level_among(double level, std::size_t n) {
+  const double number = static_cast<double>(n);
+  if (n == 1) return level;
+  if (level > 30.0) return level - std::log(number);  // to n·e⁻³⁰
+  const double none = number * std::log1p(-std::exp(-level));
+  return none < -1.0 ? -std::log1p(-std::exp(none)) : -std::log(-std::expm1(none));
 }
 
 Listened listened(const PingSimulator& simulator, const PingRecord& record,
@@ -234,30 +276,56 @@ class TargetFilter {
                   ? filter_.noise(
                         noise_density(simulator.scenario().noise, pulse_.centre_frequency()))
                   : 0.0),
-        cell_(
-            static_cast<std::ptrdiff_t>(std::ceil(whole_.sample_rate / noise_bandwidth(pulse_)))) {}
+        cell_(cell_samples(pulse_, whole_.sample_rate)),
+        spread_(cells_of(record, array, target, static_cast<double>(cell_) / whole_.sample_rate)) {}
   TargetFilter(const TargetFilter&) = delete;
   TargetFilter& operator=(const TargetFilter&) = delete;
 
   [[nodiscard]] const MatchedFilterAt& filter() const noexcept { return filter_; }
 
-  /// A time and the cells that it is compared with [samples after the echo].
+  /// A cell and those that it is compared with [samples after the echo].
   struct Place {
     std::ptrdiff_t at = 0;
-    std::vector<std::ptrdiff_t> around;
+    std::vector<std::ptrdiff_t> around{};
   };
-  /// Not known: outside the record or with too few free cells.
-  [[nodiscard]] std::optional<Place> place(std::ptrdiff_t at) const {
+  /// Cells of which the highest answers for all.
+  using Window = std::vector<Place>;
+
+  /// All cells of the echo that the record tells of; none: it is not known.
+  [[nodiscard]] Window echo() const {
+    return window(0, [](std::ptrdiff_t) { return true; });
+  }
+  /// As many at the nearest time without an echo, of two the earlier, as are free there.
+  [[nodiscard]] Window without_echo() const {
+    const auto step = static_cast<std::ptrdiff_t>(std::ceil(duration_ * whole_.sample_rate));
+    const auto most = static_cast<std::ptrdiff_t>(whole_.samples) / step + 1;
+    for (std::ptrdiff_t k = 2; k <= most; ++k)
+      for (const std::ptrdiff_t moved : {-k * step, k * step})
+        if (Window found = window(moved, [&](std::ptrdiff_t at) { return free(at); });
+            !found.empty())
+          return found;
+    return {};
+  }
+  /// Why the echo's cells are not known; "": they are.
+  [[nodiscard]] std::string why_not_known() const {
+    if (!echo().empty()) return "";
     const SampleRange record{.first = 0, .count = whole_.samples};
-    if (!holds(record, filter_, at)) return std::nullopt;
-    Place found{.at = at, .around = {}};
-    if (plan_.background == MatchedFilterPlan::Background::noise ||
-        plan_.background == MatchedFilterPlan::Background::expected ||
-        plan_.background == MatchedFilterPlan::Background::summed)
-      return found;
-    found.around = reference_cells(
-        plan_, record, filter_, [&](std::ptrdiff_t shift) { return near_.free(shift); }, at, cell_);
-    return found.around.empty() ? std::nullopt : std::optional(found);
+    const bool there = std::any_of(spread_.begin(), spread_.end(), [&](std::ptrdiff_t cell) {
+      return holds(record, filter_, cell * cell_);
+    });
+    std::array<char, 200> text{};
+    if (there)
+      static_cast<void>(std::snprintf(
+          text.data(), text.size(),
+          "fewer than %.0f of the cells around the echo are free of echoes and of the direct sound",
+          plan_.reference_cells));
+    else
+      static_cast<void>(std::snprintf(
+          text.data(), text.size(),
+          "the echo comes after %.4g s and lasts %.3g s, the record is from %.4g to %.4g s",
+          echo_.delay, duration_, whole_.start,
+          whole_.start + static_cast<double>(whole_.samples) / whole_.sample_rate));
+    return text.data();
   }
   /// Whole cells from the echo that lie in the whole record: the first [samples after the echo],
   /// and how many.
@@ -288,18 +356,51 @@ class TargetFilter {
   /// When the echo comes [s].
   [[nodiscard]] double delay() const noexcept { return echo_.delay; }
   [[nodiscard]] double doppler() const noexcept { return echo_.doppler; }
-  /// Tries the places without an echo, the nearest first and of two the earlier, until one will do.
-  template <class Try>
-  void where_free(Try&& will_do) const {
-    const auto step = static_cast<std::ptrdiff_t>(std::ceil(duration_ * whole_.sample_rate));
-    const auto most = static_cast<std::ptrdiff_t>(whole_.samples) / step + 1;
-    for (std::ptrdiff_t k = 2; k <= most; ++k)
-      for (const std::ptrdiff_t shift : {-k * step, k * step})
-        if (busy_.free(shift))
-          if (const auto found = place(shift); found && will_do(*found)) return;
+  /// |y|² in the cells of a window. \param part  of the whole record that was received
+  /// \return [window]; NaN where the part does not hold all of a cell
+  [[nodiscard]] std::vector<double> answers(const PingRecord& received, const SampleRange& part,
+                                            const Window& window) const {
+    const std::size_t samples = received.recording.samples;
+    constexpr std::size_t few = 8;  // that are sums in time; more take a transform
+    std::vector<double> powers;
+    if (window.size() > few) {
+      const std::ptrdiff_t first = window.front().at, last = window.back().at;
+      const std::vector<double> all =
+          filter_.answers(received.pressure, samples, part.first, first, cell_,
+                          static_cast<std::size_t>((last - first) / cell_) + 1);
+      for (const Place& one : window)
+        powers.push_back(all[static_cast<std::size_t>((one.at - first) / cell_)]);
+      return powers;
+    }
+    for (const Place& one : window)
+      powers.push_back(holds(part, filter_, one.at)
+                           ? filter_.answer(received.pressure, samples, part.first, one.at)
+                           : no_value);
+    return powers;
   }
 
  private:
+  /// \param of  which cells
+  template <class Of>
+  [[nodiscard]] Window window(std::ptrdiff_t moved, Of&& of) const {
+    Window found;
+    for (const std::ptrdiff_t cell : spread_)
+      if (const std::ptrdiff_t at = moved + cell * cell_; of(at))
+        if (auto one = place(at)) found.push_back(std::move(*one));
+    return found;
+  }
+  /// None outside the record, or with too few free cells around.
+  [[nodiscard]] std::optional<Place> place(std::ptrdiff_t at) const {
+    using Background = MatchedFilterPlan::Background;
+    const SampleRange record{.first = 0, .count = whole_.samples};
+    if (!holds(record, filter_, at)) return std::nullopt;
+    Place found{.at = at};
+    if (plan_.background != Background::around && plan_.background != Background::trend)
+      return found;
+    found.around = around(at, [&](std::ptrdiff_t shift) { return near_free(shift); });
+    return found.around.empty() ? std::nullopt : std::optional(found);
+  }
+
   const MatchedFilterPlan& plan_;
   Recording whole_;
   const Pulse& pulse_;
@@ -308,7 +409,43 @@ class TargetFilter {
   MatchedFilterAt filter_;
   double duration_;  // of the pulse as it is received [s]
   Busy busy_, near_;
-  std::ptrdiff_t cell_;  // [samples]
+  std::ptrdiff_t cell_;                 // [samples]
+  std::vector<std::ptrdiff_t> spread_;  // the echo's cells, after the strongest pair [cells]
+};
+
+/// u = −ln P of one cell, P the probability of as high an answer in even Rayleigh noise.
+/// docs/theory/studies.md, eq. (12) and (16)
+class LevelOverBackground {
+ public:
+  /// \param noise  E|y|² of white noise alone
+  LevelOverBackground(const MatchedFilterPlan& plan, double noise) : plan_(plan), noise_(noise) {}
+
+  /// \param mean  that is expected there, if the background is   \return NaN: not known
+  [[nodiscard]] double over_mean(double power, double mean) const {
+    if (plan_.background == Background::noise) mean = noise_;
+    if (!(mean > 0.0)) return no_value;
+    const double m = plan_.estimated_from();
+    return std::isinf(m) ? power / mean : m * std::log1p(power / mean / m);
+  }
+  /// \param others  the answers of the cells around   \param times  where they are, from this one
+  [[nodiscard]] double over_others(double power, std::span<const double> others,
+                                   std::span<const double> times) const {
+    double sum = 0.0;
+    for (const double one : others) sum += one;
+    if (!(sum > 0.0)) return no_value;
+    const auto m = static_cast<double>(others.size());
+    if (plan_.background != Background::trend || m <= 2.0) return m * std::log1p(power / sum);
+    if (*std::min_element(others.begin(), others.end()) <= 0.0) return no_value;
+    return -log_exceedance_over_trend(others, times, power);
+  }
+  [[nodiscard]] bool by_others() const noexcept {
+    return plan_.background == Background::around || plan_.background == Background::trend;
+  }
+
+ private:
+  using Background = MatchedFilterPlan::Background;
+  const MatchedFilterPlan& plan_;
+  double noise_;
 };
 
 /// Which part of the whole record a record holds.
@@ -330,18 +467,16 @@ SampleRange samples_for_filter(const PingSimulator& simulator, const PingRecord&
   std::ptrdiff_t first = whole, end = 0;
   for (std::size_t target = 0; target < record.targets.size(); ++target) {
     const TargetFilter one(simulator, record, plan, array, static_cast<int>(target));
-    const auto include = [&](const TargetFilter::Place& place) {
-      const auto add = [&](std::ptrdiff_t shift) {
-        const SampleRange needed = needed_by(one.filter(), shift);
-        first = std::min(first, needed.first);
-        end = std::max(end, needed.first + static_cast<std::ptrdiff_t>(needed.count));
-      };
-      add(place.at);
-      for (const std::ptrdiff_t shift : place.around) add(shift);
-      return true;
+    const auto add = [&](std::ptrdiff_t shift) {
+      const SampleRange needed = needed_by(one.filter(), shift);
+      first = std::min(first, needed.first);
+      end = std::max(end, needed.first + static_cast<std::ptrdiff_t>(needed.count));
     };
-    if (const auto present = one.place(0)) include(*present);
-    one.where_free(include);
+    for (const TargetFilter::Window& window : {one.echo(), one.without_echo()})
+      for (const TargetFilter::Place& place : window) {
+        add(place.at);
+        for (const std::ptrdiff_t shift : place.around) add(shift);
+      }
   }
   if (end <= first) first = end = 0;
   std::ptrdiff_t step = few / steps;
@@ -355,69 +490,66 @@ SampleRange samples_for_filter(const PingSimulator& simulator, const PingRecord&
 FilterAnswer filter_answer(const PingSimulator& simulator, const PingRecord& record,
                            const MatchedFilterPlan& plan, int array, int target,
                            double false_alarm_probability, const ExpectedAnswer& expected) {
-  const Scenario& scenario = simulator.scenario();
   const TargetFilter one(simulator, record, plan, array, target);
   const MatchedFilterAt& filter = one.filter();
   const SampleRange part = part_of(simulator, record);
-  const double density =
-      noise_density(scenario.noise, simulator.pulse(record.transmitter).centre_frequency());
-
-  const auto answer_at = [&](std::ptrdiff_t shift) {
-    return filter.answer(record.pressure, record.recording.samples, part.first, shift);
-  };
-  using Background = MatchedFilterPlan::Background;
-  const auto compare = [&](const TargetFilter::Place& place, double mean, double& statistic,
-                           double& threshold) {
-    statistic = threshold = no_value;
-    if (!holds(part, filter, place.at)) return false;
-    if (plan.background == Background::noise) {
-      statistic = answer_at(place.at) / filter.noise(density);
-      threshold = -std::log(false_alarm_probability);
-      return true;
-    }
-    if (plan.background == Background::expected || plan.background == Background::summed) {
-      if (!(mean > 0.0)) return false;
-      statistic = answer_at(place.at) / mean;
-      threshold = cfar_multiplier(false_alarm_probability, plan.estimated_from());
-      return true;
-    }
-    std::vector<double> powers, times;
-    double sum = 0.0;
+  const LevelOverBackground level(
+      plan, filter.noise(noise_density(simulator.scenario().noise,
+                                       simulator.pulse(record.transmitter).centre_frequency())));
+  std::vector<double> around, times;
+  const auto level_in = [&](const TargetFilter::Place& place, double power, double mean) {
+    if (!level.by_others()) return level.over_mean(power, mean);
+    around.clear();
+    times.clear();
     for (const std::ptrdiff_t shift : place.around) {
-      if (!holds(part, filter, shift)) return false;
-      powers.push_back(answer_at(shift));
+      if (!holds(part, filter, shift)) return no_value;
+      around.push_back(filter.answer(record.pressure, record.recording.samples, part.first, shift));
       times.push_back(static_cast<double>(shift - place.at));
-      sum += powers.back();
     }
-    if (!(sum > 0.0)) return false;
-    const auto cells = static_cast<double>(place.around.size());
-    if (plan.background == Background::trend && cells > 2.0) {
-      if (*std::min_element(powers.begin(), powers.end()) <= 0.0) return false;
-      // The ratio that is as rare over the mean of as many cells without a trend: (3) holds for it.
-      statistic =
-          cells *
-          std::expm1(-log_exceedance_over_trend(powers, times, answer_at(place.at)) / cells);
-    } else {
-      statistic = answer_at(place.at) * cells / sum;
+    return level.over_others(power, around, times);
+  };
+  // Of a window the cell that is the least probable by chance stands for all: as the ratio that is
+  // as rare in one cell, so that (3) is its threshold.
+  const auto compare = [&](const TargetFilter::Window& window, const std::vector<double>& means,
+                           double& statistic, double& threshold) {
+    const std::vector<double> powers = one.answers(record, part, window);
+    double most = no_value, cells = plan.estimated_from();
+    std::size_t known = 0;
+    for (std::size_t i = 0; i < window.size(); ++i) {
+      const double u = level_in(window[i], powers[i], i < means.size() ? means[i] : no_value);
+      if (std::isnan(u)) continue;
+      ++known;
+      if (most >= u) continue;
+      most = u;
+      if (level.by_others()) cells = static_cast<double>(window[i].around.size());
     }
+    statistic = threshold = no_value;
+    if (known == 0) return;
+    const double u = level_among(most, known);
+    statistic = std::isinf(cells) ? u : cells * std::expm1(u / cells);
     threshold = cfar_multiplier(false_alarm_probability, cells);
-    return true;
   };
 
   FilterAnswer answer;
-  answer.present = answer.threshold = answer.absent = answer.absent_threshold = no_value;
-  if (const auto present = one.place(0))
-    compare(*present, expected.present, answer.present, answer.threshold);
-  one.where_free([&](const TargetFilter::Place& place) {
-    return compare(place, expected.absent, answer.absent, answer.absent_threshold);
-  });
+  compare(one.echo(), expected.present, answer.present, answer.threshold);
+  compare(one.without_echo(), expected.absent, answer.absent, answer.absent_threshold);
+  if (std::isnan(answer.present)) {
+    answer.unknown = one.why_not_known();
+    if (answer.unknown.empty())
+      answer.unknown = "nothing is received there that the echo could be compared with";
+  }
   return answer;
+}
+
+int cells_of_echo(const PingSimulator& simulator, const PingRecord& record, int array, int target) {
+  const double rate = recording_of(simulator.scenario()).sample_rate;
+  const std::ptrdiff_t cell = cell_samples(simulator.pulse(record.transmitter), rate);
+  return static_cast<int>(cells_of(record, array, target, static_cast<double>(cell) / rate).size());
 }
 
 std::vector<FreeCell> free_cells(const PingSimulator& simulator, const PingRecord& record,
                                  const MatchedFilterPlan& plan, int array, int target,
                                  const ExpectedAnswer& expected) {
-  using Background = MatchedFilterPlan::Background;
   const TargetFilter one(simulator, record, plan, array, target);
   const TargetFilter::Lattice lattice = one.lattice();
   const std::vector<double> powers = one.filter().answers(
@@ -434,43 +566,30 @@ std::vector<FreeCell> free_cells(const PingSimulator& simulator, const PingRecor
     open[i] = one.free(shift_of(i)) && powers[i] > 0.0 ? 1 : 0;  // NaN: no
     near[i] = one.near_free(shift_of(i)) && powers[i] > 0.0 ? 1 : 0;
   }
-  const double noise = one.filter().noise(noise_density(
-      simulator.scenario().noise, simulator.pulse(record.transmitter).centre_frequency()));
+  const LevelOverBackground level(
+      plan,
+      one.filter().noise(noise_density(simulator.scenario().noise,
+                                       simulator.pulse(record.transmitter).centre_frequency())));
   std::vector<FreeCell> cells;
   std::vector<double> around, times;
   for (std::size_t i = 0; i < lattice.count; ++i) {
     if (open[i] == 0) continue;
     const std::ptrdiff_t shift = shift_of(i);
-    const double time = one.delay() + static_cast<double>(shift) / record.recording.sample_rate;
-    if (plan.background == Background::noise) {
-      cells.push_back({time, powers[i] / noise});
-      continue;
+    double u = no_value;
+    if (!level.by_others()) {
+      u = level.over_mean(powers[i], i < expected.cells.size() ? expected.cells[i] : no_value);
+    } else {
+      around.clear();
+      times.clear();
+      for (const std::ptrdiff_t other :
+           one.around(shift, [&](std::ptrdiff_t s) { return near[at(s)] != 0; })) {
+        around.push_back(powers[at(other)]);
+        times.push_back(static_cast<double>(other - shift));
+      }
+      u = level.over_others(powers[i], around, times);
     }
-    if (plan.background == Background::summed) {
-      if (i < expected.cells.size() && expected.cells[i] > 0.0)
-        cells.push_back({time, powers[i] / expected.cells[i]});
-      continue;
-    }
-    if (plan.background == Background::expected) {
-      if (i < expected.cells.size() && expected.cells[i] > 0.0)
-        cells.push_back(
-            {time, expected.draws * std::log1p(powers[i] / expected.cells[i] / expected.draws)});
-      continue;
-    }
-    around.clear();
-    times.clear();
-    double sum = 0.0;
-    for (const std::ptrdiff_t other :
-         one.around(shift, [&](std::ptrdiff_t s) { return near[at(s)] != 0; })) {
-      around.push_back(powers[at(other)]);
-      times.push_back(static_cast<double>(other - shift));
-      sum += around.back();
-    }
-    if (around.empty()) continue;
-    const auto m = static_cast<double>(around.size());
-    cells.push_back({time, plan.background == Background::trend && m > 2.0
-                               ? -log_exceedance_over_trend(around, times, powers[i])
-                               : m * std::log1p(powers[i] / sum)});
+    if (!std::isnan(u))
+      cells.push_back({one.delay() + static_cast<double>(shift) / record.recording.sample_rate, u});
   }
   return cells;
 }
@@ -481,37 +600,39 @@ std::vector<ExpectedAnswer> expected_answers(
   const SampleRange part =
       cells ? SampleRange{.first = 0, .count = recording_of(simulator.scenario()).samples}
             : samples_for_filter(simulator, record, plan, array);
+  // The ping's own windows and lattice, whatever phones a draw has.
+  struct Asked {
+    TargetFilter::Window present, absent;
+    TargetFilter::Lattice lattice;
+  };
   std::vector<ExpectedAnswer> all(record.targets.size());
-  for (ExpectedAnswer& one : all) one.draws = plan.draws;
+  std::vector<Asked> asked(all.size());
+  for (std::size_t target = 0; target < all.size(); ++target) {
+    const TargetFilter own(simulator, record, plan, array, static_cast<int>(target));
+    asked[target] = {own.echo(), own.without_echo(), own.lattice()};
+    all[target].present.assign(asked[target].present.size(), 0.0);
+    all[target].absent.assign(asked[target].absent.size(), 0.0);
+    if (cells) all[target].cells.assign(asked[target].lattice.count, 0.0);
+  }
+  const auto add = [&](const std::vector<double>& powers, std::vector<double>& to) {
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] += powers[i] / plan.draws;
+  };
   for (int k = 0; k < plan.draws; ++k) {
     PingRecord drawn = draw(k, part);
     const SampleRange there = part_of(simulator, drawn);
     // What it is heard by is where this ping's echoes come from, at the places of its own phones.
-    PingRecord asked = record;
-    asked.pressure.clear();
-    asked.phones = drawn.phones;
+    PingRecord heard = record;
+    heard.pressure.clear();
+    heard.phones = drawn.phones;
     for (std::size_t target = 0; target < all.size(); ++target) {
-      const TargetFilter one(simulator, asked, plan, array, static_cast<int>(target));
-      const auto answer_at = [&](std::ptrdiff_t shift) {
-        if (!holds(there, one.filter(), shift)) return no_value;
-        return one.filter().answer(drawn.pressure, drawn.recording.samples, there.first, shift) /
-               plan.draws;
-      };
-      if (one.place(0)) all[target].present += answer_at(0);
-      one.where_free([&](const TargetFilter::Place& place) {
-        all[target].absent += answer_at(place.at);
-        return true;
-      });
-      if (!cells) continue;
-      // The ping's own lattice, whatever phones this draw has.
-      const TargetFilter::Lattice lattice =
-          TargetFilter(simulator, record, plan, array, static_cast<int>(target)).lattice();
-      const std::vector<double> powers =
-          one.filter().answers(drawn.pressure, drawn.recording.samples, there.first, lattice.first,
-                               lattice.step, lattice.count);
-      all[target].cells.resize(lattice.count, 0.0);
-      for (std::size_t i = 0; i < lattice.count; ++i)
-        all[target].cells[i] += powers[i] / plan.draws;
+      const TargetFilter one(simulator, heard, plan, array, static_cast<int>(target));
+      add(one.answers(drawn, there, asked[target].present), all[target].present);
+      add(one.answers(drawn, there, asked[target].absent), all[target].absent);
+      const TargetFilter::Lattice& lattice = asked[target].lattice;
+      if (cells)
+        add(one.filter().answers(drawn.pressure, drawn.recording.samples, there.first,
+                                 lattice.first, lattice.step, lattice.count),
+            all[target].cells);
     }
   }
   return all;
@@ -523,25 +644,20 @@ std::vector<ExpectedAnswer> summed_answers(const PingSimulator& simulator, const
   std::vector<ExpectedAnswer> all(record.targets.size());
   for (std::size_t target = 0; target < all.size(); ++target) {
     const TargetFilter one(simulator, record, plan, array, static_cast<int>(target));
-    std::vector<double> later;
-    std::vector<double*> into;
-    const auto ask = [&](std::ptrdiff_t shift, double& answer) {
-      later.push_back(static_cast<double>(shift) / record.recording.sample_rate);
-      into.push_back(&answer);
+    const auto ask = [&](std::size_t count, const auto& shift_of) {
+      std::vector<double> later;
+      for (std::size_t i = 0; i < count; ++i)
+        later.push_back(static_cast<double>(shift_of(i)) / record.recording.sample_rate);
+      return power(one.filter(), one.doppler(), later);
     };
-    if (one.place(0)) ask(0, all[target].present);
-    one.where_free([&](const TargetFilter::Place& place) {
-      ask(place.at, all[target].absent);
-      return true;
+    const TargetFilter::Window present = one.echo(), absent = one.without_echo();
+    all[target].present = ask(present.size(), [&](std::size_t i) { return present[i].at; });
+    all[target].absent = ask(absent.size(), [&](std::size_t i) { return absent[i].at; });
+    if (!cells) continue;
+    const TargetFilter::Lattice lattice = one.lattice();
+    all[target].cells = ask(lattice.count, [&](std::size_t i) {
+      return lattice.first + static_cast<std::ptrdiff_t>(i) * lattice.step;
     });
-    if (cells) {
-      const TargetFilter::Lattice lattice = one.lattice();
-      all[target].cells.resize(lattice.count);
-      for (std::size_t i = 0; i < lattice.count; ++i)
-        ask(lattice.first + static_cast<std::ptrdiff_t>(i) * lattice.step, all[target].cells[i]);
-    }
-    const std::vector<double> answers = power(one.filter(), one.doppler(), later);
-    for (std::size_t i = 0; i < into.size(); ++i) *into[i] = answers[i];
   }
   return all;
 }

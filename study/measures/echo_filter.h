@@ -2,6 +2,7 @@
 #include <cmath>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "sonar/ping/ping.h"
@@ -10,12 +11,13 @@
 
 namespace asdic::detail::study {
 
-/// What the matched filter says of one target.
+/// What the matched filter says of one target: of its echo's cells, or as many without an echo, the
+/// highest over its background, as the ratio that is as rare in a single cell.
 struct FilterAnswer {
-  double present = 0.0;  ///< |y|² over the background at the echo's time; NaN: not known, outside
-                         ///< the record or with too few free cells around
-  double absent = 0.0;   ///< the same at a time without any echo; NaN: there is none in the record
+  double present = 0.0;  ///< in the echo's cells; NaN: not known
+  double absent = 0.0;   ///< at a time without any echo; NaN: there is none in the record
   double threshold = 0.0, absent_threshold = 0.0;  ///< that the false-alarm probability asks for
+  std::string unknown{};                           ///< why `present` is not known
 };
 
 /// Whether it is over its threshold, 0 or 1; NaN: not known, which is not the same as missed.
@@ -27,10 +29,9 @@ struct FilterAnswer {
   return over_threshold(answer.present, answer.threshold);
 }
 
-/// Means of |y|² over noise and scatterers, at the times that a target's filter looks at.
+/// Means of |y|² over noise and scatterers, in the cells that a target's filter looks at.
 struct ExpectedAnswer {
-  double present = 0.0, absent = 0.0;
-  int draws = 0;                ///< over which it is a mean; 0: it is known
+  std::vector<double> present{}, absent{};
   std::vector<double> cells{};  ///< the same in all cells of the record, where these are counted
 };
 
@@ -40,17 +41,23 @@ struct FreeCell {
   double level = 0.0;  ///< −ln P, P the probability of as high an answer in even Rayleigh noise
 };
 
-/// y(τ) = ∫ p₊(t) s₊*(η(t − τ)) dt / ∫|s₊|² dt at the delay τ, Doppler factor η and, of a beam,
-/// slowness of the target's strongest path; over its background. That is E|y|² = 2N₀/(n∫|s₊|²dt) of
-/// n phones' white noise, the mean of |y|² in the nearest cells that are free of echoes, the same
-/// along a trend of their level, or the mean over draws. A target that no path reaches is listened
-/// for when the sound would come along a straight line. Source: docs/theory/studies.md, eq. (1)–(3)
-/// and (16) \param record  the whole, or the part of it that samples_for_filter() names   \param
-/// false_alarm_probability  of one cell, for the thresholds   \param expected  of this target
+/// y(τ) = ∫ p₊(t) s₊*(η(t − τ)) dt / ∫|s₊|² dt at the Doppler factor η and, of a beam, the slowness
+/// of the target's strongest path, in all cells of 1/B in which its paths bring a hundredth of what
+/// the loudest has; over its background. That is E|y|² = 2N₀/(n∫|s₊|²dt) of n phones' white noise,
+/// the mean of |y|² in the nearest cells that are free of echoes, the same along a trend of their
+/// level, or the mean over draws. A target that no path reaches is listened for when the sound
+/// would come along a straight line. Source: docs/theory/studies.md, eq. (1)–(3), (16) and (27)
+/// \param record  the whole, or the part of it that samples_for_filter() names
+/// \param false_alarm_probability  of all cells of the echo together, for the thresholds
+/// \param expected  of this target
 [[nodiscard]] FilterAnswer filter_answer(const PingSimulator& simulator, const PingRecord& record,
                                          const MatchedFilterPlan& plan, int array, int target,
                                          double false_alarm_probability,
                                          const ExpectedAnswer& expected = {});
+
+/// Number of cells in which filter_answer() looks for a target's echo.
+[[nodiscard]] int cells_of_echo(const PingSimulator& simulator, const PingRecord& record, int array,
+                                int target);
 
 /// The samples of the whole record that filter_answer() looks at, of all targets, rounded up to a
 /// length that others have. \param record  with its echoes and legs; without samples

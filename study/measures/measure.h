@@ -28,11 +28,17 @@ class Collector {
            Column::Role role = Column::Role::measure);
   /// What columns are called from here on after their names: "_rock"; "" nothing.
   void of(std::string suffix) { suffix_ = std::move(suffix); }
+  /// Says why a value is not known.
+  void explain(const std::string& why) {
+    if (unknown_.empty()) unknown_ = why;
+  }
+  /// Why the first value that is not known is not; "": nobody said.
+  [[nodiscard]] const std::string& unknown() const noexcept { return unknown_; }
 
  private:
   std::vector<Column>* columns_ = nullptr;
   std::vector<double>* values_ = nullptr;
-  std::string suffix_;
+  std::string suffix_, unknown_;
 };
 
 /// One realisation's ping, or none, where its columns alone are wanted.

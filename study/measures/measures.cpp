@@ -216,6 +216,7 @@ Measured measure(const Study& study, const PingSimulator& simulator,
         .expected = std::move(expected),
         .run = std::move(run)},
        collector);
+  made.unknown = collector.unknown();
   clock.lap(Stage::measures);
   return made;
 }

@@ -165,6 +165,7 @@ Row Realiser::Impl::make(std::uint64_t index, double bytes, RowCost* cost) {
     row.reuse = reuse_of(measured.record.reuse);
     row.values.insert(row.values.end(), measured.values.begin(), measured.values.end());
     row.cells = std::move(measured.cells);
+    row.unknown = std::move(measured.unknown);
     for (const OwnMeasure& own : study.measure.own)
       row.values.push_back(own.of(tree, simulator, measured.record));
     if (study.rare.event)

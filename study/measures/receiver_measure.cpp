@@ -73,6 +73,7 @@ ReceiverAnswers receiver_answers(const PingSimulator& simulator, const PingRecor
                                      std::min(chosen.detector.last_time.value_or(end), end));
   ReceiverAnswers answers;
   answers.false_alarms = score.false_alarms;
+  answers.of_noise = expected_alarms(processed.result).most;
   for (const TargetScore& target : score.targets) {
     ReceiverAnswer answer{.hit = target.hit,
                           .snr_db = no_value,

@@ -4,6 +4,7 @@
 #include <tbb/task_arena.h>
 
 #include <chrono>
+#include <mutex>
 
 #include "core/error.h"
 #include "io/hdf5/own_files.h"
@@ -211,6 +212,28 @@ Realise marked(const Realise& realise, RowsInHand& hand) {
   };
 }
 
+Realise watched(const Work& work, const std::function<void(const std::string& text)>& note) {
+  struct Watch {
+    explicit Watch(RunningEstimate of) : estimate(std::move(of)) {}
+    std::mutex mutex{};
+    RunningEstimate estimate;
+    std::uint64_t rows = 0;
+  };
+  constexpr std::uint64_t enough = 10;
+  const auto watch = std::make_shared<Watch>(work.estimate());
+  return [realise = work.realise, note, watch](std::uint64_t index) {
+    Row row = realise(index);
+    const std::lock_guard lock(watch->mutex);
+    if (!row.valid || watch->rows == enough) return row;
+    watch->estimate.add(row);
+    if (++watch->rows == enough && watch->estimate.left_out() == enough)
+      note(watch->estimate.name() + " is not known in any of the first " + std::to_string(enough) +
+           " realisations" +
+           (watch->estimate.unknown().empty() ? "" : ": " + watch->estimate.unknown()));
+    return row;
+  };
+}
+
 void settle_suspects(const Work& work, const StudyRun& run, RowsInHand& hand, Journal& journal,
                      const std::function<void(Row&&)>& take) {
   constexpr int given_up_after = 2;  // deaths
@@ -314,6 +337,7 @@ void write_output(const Work& work, const StudyRun& run, const OrderedEstimate& 
   }
   outcome.skipped = estimate.skipped();
   outcome.left_out = estimate.left_out();
+  outcome.unknown = estimate.unknown();
   outcome.question = estimate.name();
   outcome.known = estimate.known();
   const auto summarise = [&](const Table& table) {

@@ -360,6 +360,7 @@ Summary summary_of_answers(const Study& study, const Table& table) {
   made.laws = law_tables(study);
   made.densities = row_densities(study, table);
   made.warnings = rate_warnings(study, made.tables);
+  for (std::string& one : alarm_warnings(study, table)) made.warnings.push_back(std::move(one));
   if (study.measure.wants("localisation_ellipse") && is_weighted(table))
     made.warnings.emplace_back(
         "localisation_ellipse: no ellipses of errors of place: they are of rows that count alike, "
@@ -421,6 +422,7 @@ void RunningEstimate::take(const Row& row, const std::vector<double>& values) {
   const double weight = weight_ < values.size() ? std::exp(values[weight_]) : 1.0;
   if (!row.valid || !std::isfinite(values[column_])) {
     if (row.valid) ++left_out_;
+    if (row.valid && unknown_.empty()) unknown_ = row.unknown;
     mean_.leave_out(row.index, weight);
     return;
   }

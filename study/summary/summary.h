@@ -58,9 +58,11 @@ class RunningEstimate {
   [[nodiscard]] const Clusters& clusters() const noexcept { return mean_.clusters(); }
   /// Valid rows in which the answer is not known or not finite: they do not count.
   [[nodiscard]] std::uint64_t left_out() const noexcept { return left_out_; }
+  /// Why the first of these is not known; "": it was not said.
+  [[nodiscard]] const std::string& unknown() const noexcept { return unknown_; }
 
  private:
-  std::string name_, unit_;
+  std::string name_, unit_, unknown_;
   std::size_t column_ = 0, weight_ = 0;
   bool proportion_ = false;
   ProportionInterval interval_ = ProportionInterval::wilson;

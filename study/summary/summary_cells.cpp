@@ -366,4 +366,22 @@ std::vector<std::string> rate_warnings(const Study& study,
   return all;
 }
 
+std::vector<std::string> alarm_warnings(const Study& study, const Table& table) {
+  const auto mean_of = [&](const std::string& name) {
+    Moments moments;
+    for (std::size_t c = 0; c < table.columns.size(); ++c)
+      for (std::size_t row = 0; table.columns[c].name == name && row < table.index.size(); ++row)
+        if (counts(table, row, c)) moments.add(table.values[c][row]);
+    return moments;
+  };
+  const Moments found = mean_of("false_alarms"), even = mean_of("false_alarms_of_noise");
+  const Interval interval = found.mean_interval(study.summary.confidence);
+  if (!(interval.low > even.mean())) return {};
+  return {"false alarms: the receiver makes " + short_text(found.mean()) + " a ping (" +
+          short_text(interval.low) + " to " + short_text(interval.high) + "), even noise at most " +
+          short_text(even.mean()) +
+          ": its threshold is not at the false-alarm probability that is set, because the "
+          "background bends or is not Rayleigh"};
+}
+
 }  // namespace asdic::detail::study

@@ -124,6 +124,8 @@ class OrderedEstimate {
   [[nodiscard]] const std::string& name() const noexcept { return estimate_.name(); }
   /// Of these rows, those that are valid and tell nothing of the estimate.
   [[nodiscard]] std::uint64_t left_out() const noexcept { return estimate_.left_out(); }
+  /// Why the first of these is not known; "": it was not said.
+  [[nodiscard]] const std::string& unknown() const noexcept { return estimate_.unknown(); }
   [[nodiscard]] std::uint64_t waiting() const noexcept { return waiting_.size(); }
 
  private:

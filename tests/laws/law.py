@@ -75,10 +75,9 @@ def stratified(s):
     water = e["sound_speed"]
     if water["kind"] == "section":
         e["sound_speed"] = {"kind": "table", "depth": water["depth"], "speed": water["speed"][0]}
-    if "shape" in e["bottom"] or "area" in e:
-        e["bottom"].pop("shape", None)
-        e.pop("area", None)
-        e["bottom"]["depth"] = water_depth(s)
+    e["bottom"]["depth"] = water_depth(s)
+    e["bottom"].pop("shape", None)
+    e.pop("area", None)
     e.get("surface", {}).pop("shape", None)
     s["propagation"].pop("dimension", None)
     s["propagation"].pop("diffraction", None)
@@ -125,14 +124,18 @@ def blast(record):
 
 
 def loudness(record, s):
-    """Sum of all paths' amplitudes times the pulse's norm: no record's norm of one phone is above it.
+    """All paths together: the sum of their amplitudes times the pulse's norm, or three times the root of the sum of their
+    squares, whichever is less.
 
-    An error of each path by a share x changes the samples by at most x of this, in norm (triangle inequality).
+    An error of each path by a share x changes the samples by at most x of the sum, in norm (triangle inequality). Errors
+    of many paths have phases of their own: then their squares add up, and three times that is rarely exceeded.
     """
     a = amplitudes(record, s)
     phones = max(1, record.pressure.shape[1])
     own_rows = record.echoes and len(record.echoes.get("channel", ())) and np.max(record.echoes["channel"]) >= 0
-    total = float(np.sum(a)) * record.replica_norm / (phones if own_rows else 1)
+    if own_rows:
+        a = a / phones
+    total = min(float(np.sum(a)), 3 * float(np.linalg.norm(a)) * (math.sqrt(phones) if own_rows else 1)) * record.replica_norm
     if total <= 0.0 or not np.any(record.pressure):
         raise Silent("nothing is received")
     return total

@@ -136,7 +136,7 @@ def stream_is_its_records(s, p):
     s = plain(s)
     hz = s["_hz"]
     s["propagation"] |= {k: 2 for k in ("max_surface_bounces", "max_bottom_bounces") if s["propagation"].get(k) == "auto"}
-    rate = float(f"{3.0 * hz + 6.0 / duration(s):.6g}")
+    rate = float(f"{2.5 * (1.2 * hz + 45.0 / duration(s)):.6g}")
     span = s["_span"] + duration(s)
     if span * rate > 4e5:
         raise Silent("long")

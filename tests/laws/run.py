@@ -15,6 +15,7 @@ import re
 import sys
 import time
 import tomllib
+import traceback
 from pathlib import Path
 
 sys.dont_write_bytecode = True
@@ -76,6 +77,8 @@ def attempt(law, s, values):
         return "dear", str(why)
     except Violation as why:
         return "violated", str(why)
+    except (KeyError, IndexError, TypeError, ValueError, ConnectionError):  # a law that does not fit: a fault of its own
+        return "violated", "the law itself fails: " + traceback.format_exc(limit=-2)
     return "held", ""
 
 

@@ -33,7 +33,7 @@ def recipes():
         "roughness": ["none", "number", "wind"], "bottom roughness": ["none", "number"],
         "wind": ["calm", "breeze", "gale"],
         "surface bounces": [1, 0, 2, 3, "auto"], "bottom bounces": [1, 0, 2, 3, "auto"],
-        "array": schema.words_at("array", "kind"), "phones": [1, 2, 4],
+        "array": schema.words_at("array", "kind"), "phones": [1, 2, 4, 8],
         "array offset": ["none", "offset"], "electronics": ["none", "errors"],
         "motion": ["rest", "target", "platform", "both", "waypoints"],
         "pulse": [k for k in schema.words_at("pulse", "kind") if k != "file"] + ["file"],
@@ -282,6 +282,7 @@ def stations(d, level, s, floor, top, hz, reach):
     span, wave = floor - top, 1500.0 / hz
     zs = place(d, level["source place"], water, floor, top)
     zt = place(d, level["target place"], water, floor, top, zs)
+    zt = min(max(zt, zs - 0.8 * reach), zs + 0.8 * reach)
     bearing = d.one_of(0.0, 30.0, 90.0, 217.0)
     away = math.sqrt(max(reach ** 2 - (zt - zs) ** 2, (0.3 * reach) ** 2))
     east, north = math.sin(math.radians(bearing)), math.cos(math.radians(bearing))
@@ -323,21 +324,24 @@ def stations(d, level, s, floor, top, hz, reach):
     if kind == "two":
         s["target"].append({"name": "second", "position": at(0.8 * away * east, 0.8 * away * north, place(d, "free", water, floor, top)),
                             "strength_db": 5.0})
-    s["array"] = [array(d, level, zs, span, wave, ships)]
+    carrier = ships[-1]
+    zr = (carrier["waypoints"][0]["position"] if "waypoints" in carrier else carrier["position"])[2]
+    s["array"] = [array(d, level, 1.6 * min(zr - top, floor - zr), 0.1 * reach, wave, carrier["name"])]
     if level["ship"] == "ship":
         s["interferer"] = [{"name": "ship", "position": at(-0.7 * reach * north, 0.7 * reach * east, top + min(5.0, 0.2 * span)),
                             "level_db": 120.0}]
 
 
-def array(d, level, zs, span, wave, ships):
+def array(d, level, room, reach, wave, platform):
+    """[array], no longer than `room` where it may stand upright and than `reach` elsewhere."""
     n, kind = level["phones"], level["array"]
-    room = 0.04 * span  # phones stay in the water whatever their line is
-    spacing = digits(min(wave * d.times(0.3, 3.0), room / max(n - 1, 1), 50.0))
-    a = {"name": "array", "platform": ships[-1]["name"], "kind": kind}
+    most = min(room if kind in ("vertical", "line", "positions") else reach, reach)
+    spacing = digits(max(min(wave * d.times(0.3, 8.0), 0.9 * most / max(n - 1, 1), 50.0), 1e-4))
+    a = {"name": "array", "platform": platform, "kind": kind}
     if kind in ("horizontal", "vertical", "line"):
         a |= {"phones": n} | ({"spacing": spacing} if n > 1 else {})
     elif kind == "positions":
-        a["positions"] = [[digits(spacing * i), digits(0.5 * spacing * (i % 2)), digits(0.2 * spacing * i)] for i in range(n)]
+        a["positions"] = [[digits(spacing * i), digits(0.5 * spacing * (i % 2)), digits(0.2 * spacing * (i - 0.5 * (n - 1)))] for i in range(n)]
     elif kind == "towed":
         a |= {"behind": [digits(10 * spacing + spacing * i) for i in range(n)]}
     if kind in ("horizontal", "line", "towed"):

@@ -202,7 +202,7 @@ def arrivals_are_the_pings(s, p):
     record = ping(s)
     rows = need_leg(record)
     with Folder(s) as folder:
-        said = json.loads(run(folder, "arrivals", "s.toml", "--leg", "target", "--target", "0", "--json", "--threads", "1"))
+        said = json.loads(run(folder, "arrivals", "s.toml", "--leg", "target", "--target", "0", "--json"))
     found = said["legs"][0]["arrivals"]
     expect(len(found) == len(rows["delay"]), f"{len(found)} arrivals, /arrivals {len(rows['delay'])}")
     order = np.argsort(rows["delay"], kind="stable")

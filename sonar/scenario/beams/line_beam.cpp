@@ -39,7 +39,7 @@ std::string LineBeam::text(double elevation) const {
   std::ostringstream text;
   text << "elevation " << degrees(elevation) << " deg, beamwidth " << degrees(beamwidth) << " deg";
   const double width = steered_width(elevation);
-  if (width > 1.01 * beamwidth)
+  if (width > 1.05 * beamwidth)
     text << " unsteered, " << std::setprecision(3) << degrees(width) << " deg as it is steered";
   return text.str();
 }

@@ -31,6 +31,8 @@ void LocalisationEllipse::of_target(const MeasuredPing& ping, std::size_t target
 
 void FalseAlarms::of_ping(const MeasuredPing& ping, Collector& to) {
   to.add("false_alarms", "1", "detections that are no target's", ping.receiver.false_alarms);
+  to.add("false_alarms_of_noise", "1", "as many of them as even noise makes at most",
+         ping.receiver.of_noise);
 }
 
 }  // namespace asdic::detail::study

@@ -68,7 +68,7 @@ TEST_F(Process, CanLeaveTheFileAlone) {
   const auto done = asdic(folder_, "process small.h5 --no-file");
   EXPECT_EQ(done.status, 0) << done.err;
   EXPECT_THAT(done.out, HasSubstr("rock"));
-  EXPECT_THAT(done.out, HasSubstr("targets with an echo in the time searched: 2 found, 0 missed"));
+  EXPECT_THAT(done.out, HasSubstr("targets: 2 found, 0 missed, 0 not detectable"));
   EXPECT_TRUE(support::content(folder_ / "small.h5") == before);
 }
 

@@ -38,7 +38,7 @@ TEST(EnergyBound, RefusesWhatIsLouder) {
     ensure_bounded({right, loud}, shelf(), ends);
     FAIL();
   } catch (const RunError& error) {
-    for (const char* part : {"3500 Hz", "12945.7 m", "100.0 dB over", "at most 4", "17.7 dB"})
+    for (const char* part : {"3500 Hz", "12945.7 m", "100.0 dB over", "at most 52.6 dB", "17.7 dB"})
       EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
   }
 }
@@ -46,14 +46,14 @@ TEST(EnergyBound, RefusesWhatIsLouder) {
 // Finite and of some tens of decibels over spherical spreading.
 TEST(EnergyBound, IsFinite) {
   const double d2 = ends.range * ends.range;
-  EXPECT_NEAR(db_from_power(most_intensity(shelf(), ends) * d2), 40.0, 10.0);
+  EXPECT_NEAR(db_from_power(most_intensity(shelf(), ends) * d2), 50.0, 10.0);
   LegEnds slopes = ends;
   slopes.layered = false;
-  EXPECT_LT(db_from_power(most_intensity(shelf(), slopes) * d2), 65.0);
+  EXPECT_LT(db_from_power(most_intensity(shelf(), slopes) * d2), 80.0);
 }
 
 // In c = c₀·cosh(az) all rays from the axis meet again after each π/a: the greatest focus there is.
-// Its modes, by finite differences and in phase, stay below the bound and come within 15 dB of it.
+// Its modes, by finite differences and in phase, stay below the bound and come within 27 dB of it.
 TEST(EnergyBound, LetsAPerfectFocusPass) {
   const double a = 2e-4, axis = 1500.0, f = 100.0, omega = 2.0 * pi * f;
   const auto speed = [&](double z) { return 1500.0 * std::cosh(a * (z - axis)); };
@@ -74,7 +74,7 @@ TEST(EnergyBound, LetsAPerfectFocusPass) {
     const double bound = most_intensity(
         ocean, {.source_depth = axis, .receiver_depth = axis, .range = range, .frequency = f});
     EXPECT_LT(std::norm(sum), bound) << n;
-    EXPECT_GT(std::norm(sum), power_from_db(-15.0) * bound) << n;
+    EXPECT_GT(std::norm(sum), power_from_db(-27.0) * bound) << n;
   }
 }
 

@@ -185,6 +185,19 @@ TEST(Cycles, ADuctAboveTheAxisIsReceivedBelowIt) {
     }
 }
 
+// Both ends where the speed is greatest, a node of the profile, or a millimetre beside it: the
+// slope is nothing there, and waves that turned on the wrong side were e¹²⁰ times too great.
+TEST(Cycles, EndsAtTheGreatestSpeed) {
+  const std::vector<double> depth = {0.0, 20.0, 46.712, 80.0, 110.0},
+                            speed = {1485.0, 1488.0, 1495.0, 1492.0, 1487.0};
+  Water water = guide(SoundSpeedProfile::table(depth, speed, Interpolation::pchip));
+  water.ocean.bottom.depth = 110.0;
+  for (const double apart : {0.0, 1e-3, -1e-3, 9e-3}) {
+    const Places at{1717.0, 46.712, 46.712 + apart, 1520.0, 1540.0, 5};
+    EXPECT_LT(off(water, at).waves, 0.03) << apart;
+  }
+}
+
 // Boundaries that rays must not touch return nothing to waves.
 TEST(Cycles, BouncesBeyondTheLimitAreLeftOut) {
   Water reflecting = channel();

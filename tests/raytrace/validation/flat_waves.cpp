@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <complex>
 
 #include "raytrace/places/propagation_paths.h"
 #include "support/depth_modes.h"
@@ -9,9 +10,10 @@
 namespace asdic::detail {
 namespace {
 
-/// Σ|A|² of a leg, and its loudest path.
+/// Σ|A|² of a leg, its loudest path, and all of them in phase.
 struct Energy {
   double all = 0.0, loudest = 0.0;
+  std::complex<double> sum = 0.0;
 };
 
 Energy energy_of(const Environment& ocean, double frequency, double source, double receiver,
@@ -24,6 +26,8 @@ Energy energy_of(const Environment& ocean, double frequency, double source, doub
        paths.find({0.0, 0.0, source}, {range, 0.0, receiver}, frequency, limits)) {
     energy.all += std::norm(path.amplitude);
     energy.loudest = std::max(energy.loudest, std::norm(path.amplitude));
+    energy.sum +=
+        path.amplitude * std::polar(1.0, -2.0 * pi * std::fmod(frequency * path.delay, 1.0));
   }
   return energy;
 }
@@ -69,6 +73,10 @@ TEST(FlatWaves, AboutTheAxisOfASpline) {
   };
   const auto trapped = modes_from(omega / 1495.7767), all = modes_from(0.1 * omega / 1500.0);
   for (const double receiver : {150.0, 200.0, 216.594, 218.0, 250.0, 296.233}) {
+    // The way back has other rays beside a caustic, and the same waves: each ray may lack 0.1 %.
+    const auto there = energy_of(ocean, f, source, receiver, range, 2),
+               home = energy_of(ocean, f, receiver, source, range, 2);
+    EXPECT_LT(std::abs(there.sum - home.sum), 0.01 * std::sqrt(there.all)) << receiver;
     EXPECT_LT(db(energy_of(ocean, f, source, receiver, range, 2).all),
               db(trapped.energy(source, receiver, range, 1.0)) + 3.0)
         << receiver;

@@ -31,8 +31,8 @@ TEST(LevelPaths, InIsovelocityWaterTheDirectRayIsThereWhateverTheDifference) {
   const EigenraySolver solver(ocean);
   for (const double depth : {0.0, 50.1, 200.0})
     for (const double range : {3.0, 1200.0, 20e3, 300e3})
-      for (const double apart : differences()) {
-        const double there = depth + apart;
+      for (const double difference : differences()) {
+        const double there = depth + difference, apart = there - depth;
         if (there < 0.0 || there > 200.0) continue;
         const Arrivals paths = solver.find(depth, there, range, 4000.0, one_bounce);
         const double length = std::hypot(range, apart);
@@ -100,7 +100,7 @@ std::vector<FlatRoot> brute_force(const SoundSpeedProfile& water, double source,
         const double middle = 0.5 * (low + high);
         ((miss(middle) > 0.0) == (before > 0.0) ? low : high) = middle;
       }
-      const double off = 1e-4 * std::max(std::abs(low), 1e-3 * std::abs(receiver - source) / range);
+      const double off = std::max(1e-4 * std::abs(low), 1e-9);
       found.push_back({low, (miss(low + off) - miss(low - off)) / (2.0 * off)});
     }
     before = now;
