@@ -40,8 +40,8 @@ spectral_level_db = 40.0
 [reverberation]
 enabled = false
 [pings]
-recording_duration = 60.0
-sample_rate = 2000.0
+recording_duration = 30.0
+sample_rate = 4000.0
 """
 
 

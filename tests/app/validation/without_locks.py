@@ -52,7 +52,7 @@ spectral_level_db = 40.0
 enabled = false
 [pings]
 recording_duration = 1.0
-sample_rate = 2000.0
+sample_rate = 4000.0
 """
 STUDY = """[study]
 scenario = "sea.toml"
