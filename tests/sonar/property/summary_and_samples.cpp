@@ -71,7 +71,7 @@ TEST(SummaryAndSamples, EchoPeakIsThatOfTheSamples) {
       for (const bool wide : {false, true})
         for (const double speed : {0.0, 6.0}) {
           Scenario s = guide(depth, pulse.settings);
-          s.propagation.wide_band = wide;
+          s.propagation.band = wide ? BandOfLosses::wide : BandOfLosses::narrow;
           s.propagation.max_surface_bounces = s.propagation.max_bottom_bounces = 2;
           s.platforms[0].track.start.velocity = {speed, 0.0, 0.0};
           s.targets[0].track.start.velocity = {0.0, -0.5 * speed, 0.0};
