@@ -212,7 +212,7 @@ std::string all_text(const NotedSettings& noted) {
 }
 
 /// Processor time that looking at the paths of a ping may take [s].
-constexpr double most_seconds = 4.0;
+constexpr double most_seconds = 3.0;
 
 /// Does some work, and calls it off when it has taken that. \return whether it came to its end
 bool done_in_time(const std::function<void()>& work) {

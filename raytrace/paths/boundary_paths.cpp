@@ -284,8 +284,12 @@ std::vector<CellPath> march_fan(const EigenraySolver& solver, double source_dept
                                 const GroundLevel& level, const GroundGrid& grid, double max_range,
                                 double frequency, const PathLimits& limits, const StopPoint& stop) {
   stop();
+  SearchWatch watch{.progress = [&](double /*share*/) {
+    stop();
+    return true;
+  }};
   return paths_of(hits_on_cells(*solver.tracer(frequency), source_depth, level, grid, max_range,
-                                frequency, fan_limits(limits)),
+                                frequency, fan_limits(limits), &watch),
                   grid, limits);
 }
 

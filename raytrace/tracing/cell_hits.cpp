@@ -119,7 +119,8 @@ class CellSearch {
 
 std::vector<CellHit> hits_on_cells(const RayTracer& tracer, double source_depth,
                                    const GroundLevel& level, const GroundGrid& grid,
-                                   double max_range, double frequency, const FanLimits& limits) {
+                                   double max_range, double frequency, const FanLimits& limits,
+                                   SearchWatch* watch) {
   // As many bounces before the hit as allowed: a hit on a boundary is itself one more.
   TraceLimits trace{.max_range = max_range + grid.wide(),
                     .min_depth = limits.min_depth,
@@ -133,7 +134,8 @@ std::vector<CellHit> hits_on_cells(const RayTracer& tracer, double source_depth,
   trace.min_range = -max_range;
   const FanSplitting<CellSearch> fan(limits.lowest, limits.highest);
   return fan.run(
-      [&] { return CellSearch(tracer, source_depth, level, grid, max_range, frequency, trace); });
+      [&] { return CellSearch(tracer, source_depth, level, grid, max_range, frequency, trace); },
+      watch);
 }
 
 }  // namespace asdic::detail

@@ -21,10 +21,11 @@ struct CellHit {
 /// Every path of a fan of marched rays to every cell, interpolated between neighbours that struck
 /// the same boundaries and passed the level as often; range is right to a hundredth of a cell.
 /// Near a caustic the amplitude is held as in boundary_paths.h. \param grid  without fine cells
-/// \param max_range [m]
+/// \param max_range [m]   \param watch  see SearchWatch
 [[nodiscard]] std::vector<CellHit> hits_on_cells(const RayTracer& tracer, double source_depth,
                                                  const GroundLevel& level, const GroundGrid& grid,
                                                  double max_range, double frequency,
-                                                 const FanLimits& limits);
+                                                 const FanLimits& limits,
+                                                 SearchWatch* watch = nullptr);
 
 }  // namespace asdic::detail
