@@ -333,8 +333,11 @@ std::string domain_of(const SettingRecord& record) {
     case Type::number:
       return range_of(record.quantity) +
              (record.quantity.unit == "bytes" ? R"(, or a text: "4 GB")" : "") + other;
-    case Type::whole_number:
-      return with_range("whole", record.quantity) + other;
+    case Type::whole_number: {
+      Quantity q = record.quantity;
+      if (q.high >= std::numeric_limits<std::int32_t>::max()) q.high = infinity;  // of the type
+      return with_range("whole", q) + other;
+    }
     case Type::flag:
       return "`true`, `false`";
     case Type::text:

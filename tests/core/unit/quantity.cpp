@@ -15,7 +15,7 @@ TEST(Quantity, SaysWhatItIs) {
   EXPECT_EQ(quantity::elevation.in_degrees().expected(), "an elevation from -90 to 90 degrees");
   EXPECT_EQ((Quantity{.low = 0.0, .above = true}).expected(), "a number above 0");
   EXPECT_EQ((Quantity{.high = 3.0}).expected(), "a number of at most 3");
-  EXPECT_EQ(quantity::duration.expected(), "a duration above 0 and at most 100000 s");
+  EXPECT_EQ(quantity::duration.expected(), "a duration from 1e-06 to 100000 s");
 }
 
 TEST(Quantity, HoldsWhatItSays) {

@@ -209,7 +209,7 @@ TEST(GeneratedPulses, AreRefusedWithWhatWasExpected) {
       "s.toml:6: gap_ratio: found 1.5, expected a smaller one, fewer lines or a longer pulse: "
       "the smallest gap is 0.04512965664480362 Hz, below 1/duration, where lines melt into one");
   EXPECT_EQ(refusal_of(comb + "lines = 8\ngap_ratio = 1\n"),
-            "s.toml:6: gap_ratio: found 1, expected a ratio above 1 and at most 10");
+            "s.toml:6: gap_ratio: found 1, expected a ratio from 1.0001 to 10");
   EXPECT_EQ(refusal_of("kind = \"pulse_train\"\nfrequency = 500\npulses = 3\npulse_duration = "
                        "0.4\nduration = 1\n"),
             "s.toml:4: pulse_duration: found 0.4, expected at most 0.3333333333333333 s: 3 pulses "
