@@ -164,7 +164,7 @@ double beside_alone_db(const Shelf& shelf, BandOfLosses band, std::span<const in
     double off = 0.0, all = 0.0;
     for (std::size_t k = 0; k < alone.pressure.size(); ++k) {
       const double p = alone.pressure[k];
-      off += std::pow(of_phone(line, int(i))[k] - p, 2);
+      off += std::pow(double(of_phone(line, int(i))[k]) - p, 2);
       all += p * p;
     }
     worst = std::max(worst, db_from_power(off / all));

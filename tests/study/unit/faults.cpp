@@ -169,7 +169,7 @@ TEST(StudyFile, EveryFaultNamesLineKeyFoundAndExpected) {
        "\"echo_level\"?)"},
       {study + "[measure]\ndetection = { false_alarm_probability = 0.9 }\n",
        "study.toml:4: measure.detection.false_alarm_probability: found 0.9, expected a probability "
-       "above 0 and at most 0.5"},
+       "from 1e-30 to 0.5"},
       {study + "[measure]\ndetection = { by = \"ear\" }\n",
        "study.toml:4: measure.detection.by: found \"ear\", expected \"matched_filter\" or "
        "\"receiver\""},

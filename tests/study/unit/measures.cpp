@@ -206,7 +206,7 @@ TEST_F(Measures, TheReceiverTakesWhatProcessTakes) {
           "[measure]\nlocalisation_error = true\n[measure.receiver]\nbeamformer = \"mvdr\"\n"
           "mvdr_loading_db = -3.0\nshading = \"hann\"\nelevations = \"-20:20\"\n"
           "max_speed = 600.0\nnormaliser = \"cell-averaging\"\nacross_beams = false\n"
-          "guard_cells = 1e5\nreference_cells = 1e5\nfalse_alarm_probability = 1e-40\n"
+          "guard_cells = 1e5\nreference_cells = 1e5\nfalse_alarm_probability = 1e-20\n"
           "from = 1.0\nuntil = 2e6\ntarget_depth = 90.0\nrange_speed = 1490.0\n")
           .measure.receiver;
   EXPECT_EQ(made.detector.beamformer, Beamformer::mvdr);
@@ -219,7 +219,7 @@ TEST_F(Measures, TheReceiverTakesWhatProcessTakes) {
   EXPECT_FALSE(made.detector.normaliser.across_beams);
   EXPECT_EQ(made.detector.normaliser.guard_cells, 1e5);
   EXPECT_EQ(made.detector.normaliser.reference_cells, 1e5);
-  EXPECT_EQ(made.detector.normaliser.false_alarm_probability, 1e-40);
+  EXPECT_EQ(made.detector.normaliser.false_alarm_probability, 1e-20);
   EXPECT_EQ(made.detector.first_time, 1.0);
   EXPECT_EQ(made.detector.last_time, 2e6);
   EXPECT_EQ(made.target_depth, 90.0);
