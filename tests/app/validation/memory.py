@@ -106,7 +106,7 @@ try:
     deep = ROOT / "scenarios/deep_ocean.toml"
     refused(ping, "shallow.toml", ["run.memory=100 MB", "reverberation.ground_spacing=0.3"],
             "reverberation.ground_spacing")
-    refused(ping, deep, ["pulse={kind=\"cw\", frequency=3000.0, duration=1e-7}", "run.memory=500 MB"], "pulse.duration")
+    refused(ping, deep, ["pulse={kind=\"cw\", frequency=3000.0, duration=1e-6}", "run.memory=500 MB"], "pulse.duration")
     refused(ping, deep, ["pings.recording_duration=50000", "run.memory=1 GB"], "pings.recording_duration")
     refused(field, ROOT / "scenarios/wedge.toml", ["run.receivers.range={first=1, last=4000, count=100000}",
                                                    "run.receivers.depth={first=1, last=200, count=2000}",
