@@ -438,7 +438,7 @@ class Pings(unittest.TestCase):
         for ping in s.pings():
             break
         self.assertEqual(threading.active_count(), before)
-        s.pulse.duration = 1e4
+        s.pulse.duration = 900.0
         with self.assertRaises(asdic.InputError):
             list(s.pings())
 
