@@ -5,6 +5,7 @@
 #include "app/command.h"
 #include "app/console.h"
 #include "core/error.h"
+#include "io/files/files_read.h"
 #include "io/hdf5/own_files.h"
 #include "io/scenario/embedded.h"
 #include "io/text/csv_table.h"
@@ -68,6 +69,7 @@ void check_existing(const std::filesystem::path& output, const std::string& iden
   std::string got = "a file that is no study's";
   try {
     const study::StudyFile there(output);
+    forget_read(output);  // no part of what is merged
     if (there.fingerprint().identity == identity) return;
     got = "results of another study (identity " + there.fingerprint().identity + ")";
   } catch (const InputError&) {
