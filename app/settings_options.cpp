@@ -18,7 +18,6 @@ namespace {
 Check rule_of(const Quantity& q) {
   const bool open = q.high == infinity;
   if (open && q.low == 0.0) return q.above ? above_zero() : not_negative();
-  if (!open && !q.above && !q.or_zero) return between(q.low, q.high);
   return number_of(q);
 }
 

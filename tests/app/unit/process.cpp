@@ -118,7 +118,7 @@ TEST_F(Process, SaysWhatIsWrong) {
   refused("process small.h5 --elevations up",
           "--elevations: found \"up\", expected two angles such");
   refused("process small.h5 --max-speed 601",
-          "--max-speed: Value 601 not in range 0.000000 to 600.000000");
+          "--max-speed: found 601, expected a speed from 0 to 600 m/s");
   refused("process small.h5 --beamformer best", "conventional");
   refused("process small.h5 --target-depth deep", "a length such as 60km, 500m or 500");
   refused("process small.h5 --target-depth 9000m", "--target-depth: found 9000");
