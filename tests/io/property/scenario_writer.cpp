@@ -67,8 +67,8 @@ BoundaryMaterial any_material() {
     case 2:
       return FluidHalfSpace{between(200.0, 7000.0), between(100.0, 9000.0), between(0.0, 5.0)};
     case 3:
-      return ElasticHalfSpace{between(1500.0, 7000.0), between(0.0, 1500.0), between(100.0, 9000.0),
-                              between(0.0, 5.0), between(0.0, 5.0)};
+      return ElasticHalfSpace{between(1500.0, 7000.0), perhaps() ? 0.0 : between(1.0, 1500.0),
+                              between(100.0, 9000.0), between(0.0, 5.0), between(0.0, 5.0)};
     case 4: {
       ReflectionCurves curves{.frequency = axis(1, 4, 10.0, 1e5), .curve = {}};
       for (std::size_t i = 0; i < curves.frequency.size(); ++i) curves.curve.push_back(any_curve());
