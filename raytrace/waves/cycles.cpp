@@ -271,9 +271,9 @@ void put_waves(const EigenraySolver& solver, double source_depth, double receive
   };
   // Of a term, or of flat waves (number = count), with so many bounces off either boundary at most.
   const auto group_of = [&](std::size_t number, int bounces) {
-    const bool flat = number == count;
-    const bool surface = no_surface || bounces > limits.max_surface_bounces,
-               bottom = no_bottom || bounces > limits.max_bottom_bounces;
+    const bool flat = number == count;  // of all cycles: bounces that rays have not are not apart
+    const bool surface = no_surface || (!flat && bounces > limits.max_surface_bounces),
+               bottom = no_bottom || (!flat && bounces > limits.max_bottom_bounces);
     WaveGroup here{.lacking = waves_without(surface, bottom, number)};
     if (!waterborne && !bottom) here.lacking -= waves_without(surface, true, number);
     for (std::size_t i = 0; i < found.size(); ++i) {
