@@ -344,9 +344,17 @@ bool narrows_to_paths(const PropagationCase& run_case) {
 
 bool mirrors_exactly(const PropagationCase& run_case) noexcept {
   const Environment& ocean = run_case.environment;
-  const auto mirrors = [](const Boundary& wall) {
-    return wall.roughness.smooth() && (std::holds_alternative<Vacuum>(wall.material) ||
-                                       std::holds_alternative<Rigid>(wall.material));
+  const auto mirrors = [&](const Boundary& wall) {
+    const auto at = [&](double grazing) {
+      return reflection_coefficient(wall.material, grazing,
+                                    {.speed = sound_speed(ocean, 0.0, wall.depth).c,
+                                     .density = ocean.water_density.at(wall.depth),
+                                     .frequency = run_case.frequency});
+    };
+    bool alike = wall.roughness.smooth();
+    for (const double grazing : {0.01, 0.1, 0.3, 0.6, 1.0})
+      alike = alike && std::abs(at(grazing) - at(0.5 * pi)) < 1e-12;
+    return alike;
   };
   return mirrors(ocean.surface) && mirrors(ocean.bottom);
 }

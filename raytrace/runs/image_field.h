@@ -27,8 +27,8 @@ struct RaySum {
 /// anything. \param sums  [rows × ranges]
 [[nodiscard]] ConvergedField field_of_sums(const std::vector<RaySum>& sums, bool coherent);
 
-/// Whether walls reflect all angles alike, vacuum or rigid and smooth: then images are the wave
-/// equation's field, and not only that of rays.
+/// Whether smooth walls reflect all angles alike, as vacuum, a rigid wall or the same water do:
+/// then images are the wave equation's field, and not only that of rays.
 [[nodiscard]] bool mirrors_exactly(const PropagationCase& run_case) noexcept;
 
 /// The field of a source in isovelocity water between flat boundaries, as a sum over its images: of

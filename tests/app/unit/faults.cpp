@@ -131,7 +131,9 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"settings pulse > /dev/full", 1, {"standard output"}},
         Fault{"validate small.toml > /dev/full", 1, {"standard output"}},
         Fault{"serve small.toml < hello.jsonl > /dev/full", 1, {"standard output: No space left"}},
-        Fault{"serve small.toml --replay /dev/zero", 2, {"/dev/zero: found a device, which is no file, expected"}},
+        Fault{"serve small.toml --replay /dev/zero",
+              2,
+              {"/dev/zero: found a device, which is no file, expected"}},
         Fault{"serve small.toml --replay long.jsonl",
               2,
               {"long.jsonl:1: found another line, expected what --log has written"}}));

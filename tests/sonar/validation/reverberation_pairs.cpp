@@ -191,6 +191,9 @@ TEST(ReverberationField, FastSynthesisIsDirectSynthesis) {
   s.arrays[0] = line_array(3, 0.4, 0.4, 0.1);
   s.arrays[0].platform = 1;
   s.reverberation.resolve_azimuth = false;
+  // Sheets of equal thickness, so that many returns are of the same strength.
+  VolumeLayer& layer = s.reverberation.volume[0];
+  layer.sheets = std::max(1, int(std::ceil((layer.bottom - layer.top) / 50.0)));
   const Sea sea(s);
   const Returns all = sea.ping(1).returns();
   Returns some;
