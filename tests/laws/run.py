@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The law machine: draws scenarios, holds them to laws, shrinks what fails and keeps it. docs/develop/laws.md.
 
-    run.py                               CI: replays what was found, then some 60 draws with the seed of the day
+    run.py --draws 0                     CI: replays what was found; run.py alone: some 60 draws with the seed of the day as well
     run.py --minutes 60 --jobs 2         an hour of draws; --seed S, --law NAME (again for more), --draws N
     run.py --replay [NAME ...]           replays alone
 """
