@@ -86,8 +86,8 @@ TEST_P(SharedPropagationLaws, NothingIsTracedTwiceAndNoBitChanges) {
     EXPECT_TRUE(record.reuse.ocean);
     EXPECT_TRUE(record.reuse.reverberation);
     // Over slopes paths are looked for at the outermost phones, too, which have turned.
-    const bool over_slopes = s.environment.bottom.shape != nullptr;
-    if (!over_slopes || change.name != std::string_view("heading of the array")) {
+    const bool over_slopes = s.environment.bottom.shape.has_value();
+    if (!over_slopes || change.name != "heading of the array") {
       EXPECT_EQ(record.reuse.legs_searched, 0);
     }
     EXPECT_GT(record.reuse.legs_reused, 1);
