@@ -548,7 +548,7 @@ def saved_and_replayed():
     for arguments, said in (
             (["--log", "clock.jsonl"], "which is there, expected a new file"),
             (["--replay", "sea.toml"], "sea.toml:1: found another line"),
-            (["--replay", "nothing"], "cannot be read"),
+            (["--replay", "nothing"], "found no such file"),
             (["--replay", "log.jsonl", "--set", "seed=3"], "another scenario (overrides)"),
             (["--replay", "log.jsonl", "--pace", "real"], "expected none of them")):
         done = subprocess.run([ASDIC, "serve", "sea.toml", *arguments], stdin=subprocess.DEVNULL,
