@@ -358,7 +358,8 @@ TEST(EnoughBounces, WavesAreFollowedAndKnowTheirBand) {
                    anew = paths.find(from, place, 1000.0, limits);
     ASSERT_EQ(followed.size(), anew.size()) << moved;
     // 7 % at one wavelength: flat waves are shared among rays as one group, by the errors that rays
-    // have at either place, and are not followed themselves. 5 % would be what one wavelength needs.
+    // have at either place, and are not followed themselves. 5 % would be what one wavelength
+    // needs.
     EXPECT_LT(std::abs(field_of(followed, 1000.0) - field_of(anew, 1000.0)),
               0.08 * std::sqrt(energy))
         << moved;
