@@ -45,6 +45,33 @@ std::complex<double> reflected(const Environment& ocean, const Arrival& path, do
   return product;
 }
 
+/// Shares what paths that a band does not resolve bring together among them as at the centre: which
+/// of them has it may change at once with frequency, where rays meet, and their sum does not.
+/// \param amplitudes  [leg.paths] at a frequency, taken to their delays at the centre
+void share_unresolved(const MetLeg& leg, double frequency, double half_width,
+                      std::vector<std::complex<double>>& amplitudes) {
+  const double resolved = 0.05 / half_width;  // of delays [s]
+  const auto turned = [&](std::size_t i) {
+    return std::polar(1.0, -2.0 * pi * std::fmod(frequency * leg.paths[i].delay, 1.0));
+  };
+  for (std::size_t first = 0, last = 0; first < leg.paths.size(); first = last) {
+    std::complex<double> changed = 0.0;
+    double energy = 0.0;
+    for (last = first;
+         last < leg.paths.size() &&
+         (last == first || leg.paths[last].delay - leg.paths[last - 1].delay < resolved);
+         ++last) {
+      changed += (amplitudes[last] - leg.paths[last].amplitude) * turned(last);
+      energy += std::norm(leg.paths[last].amplitude);
+    }
+    if (last - first < 2 || energy == 0.0) continue;
+    for (std::size_t i = first; i < last; ++i) {
+      const std::complex<double> here = leg.paths[i].amplitude;
+      amplitudes[i] = here + std::norm(here) / energy * changed * std::conj(turned(i));
+    }
+  }
+}
+
 /// Of the paths found at a frequency, the one that a path is there.
 const Arrival* become(const Arrivals& found, const Arrival& path, bool layered) {
   // There is one diffracted arrival, from wherever it comes.
@@ -83,22 +110,32 @@ SampledResponse sampled_response(
   }
   for (std::size_t cells = 4;; cells *= 2) {
     SampledResponse finer{.nodes = {centre, half_width, {}}, .values = {}};
-    double worst = 0.0, greatest = 0.0;
+    finer.values.resize(cells + 1);
+    double greatest = 0.0;
     for (std::size_t k = 0; k <= cells; ++k) {
-      const double f = place(k, cells);
-      const bool before = k % 2 == 0;
-      finer.nodes.frequencies.push_back(f);
-      finer.values.push_back(before ? known.values[k / 2] : responses(f));
-      const std::vector<std::complex<double>>& value = finer.values.back();
-      greatest = std::max(greatest, size(value));
-      if (before) continue;
-      std::vector<std::complex<double>> off = known.at(f);
-      for (std::size_t i = 0; i < off.size(); ++i) off[i] -= value[i];
-      worst = std::max(worst, size(off));
+      finer.nodes.frequencies.push_back(place(k, cells));
+      if (k % 2 == 0) finer.values[k] = known.values[k / 2];
+      greatest = std::max(greatest, size(finer.values[k]));
     }
-    finer.error = greatest > 0.0 ? worst / greatest : 0.0;
+    /// Computes every `step`-th of the new values. \return how far they were off, the most
+    const auto off = [&](std::size_t first, std::size_t step) {
+      double worst = 0.0;
+      for (std::size_t k = first; k <= cells; k += step) {
+        if (!finer.values[k].empty()) continue;
+        finer.values[k] = responses(finer.nodes.frequencies[k]);
+        std::vector<std::complex<double>> foretold = known.at(finer.nodes.frequencies[k]);
+        for (std::size_t i = 0; i < foretold.size(); ++i) foretold[i] -= finer.values[k][i];
+        worst = std::max(worst, size(foretold));
+        greatest = std::max(greatest, size(finer.values[k]));
+      }
+      return greatest > 0.0 ? worst / greatest : 0.0;
+    };
+    const std::size_t few = std::max<std::size_t>(1, cells / 8);  // four of the new ones, or all
+    known.error = off(few | 1, 2 * few);
+    if (known.error <= error) return known;
+    finer.error = std::max(known.error, off(1, 2));
     known = std::move(finer);
-    if (known.error <= error || 2 * cells + 1 > most) return known;
+    if (2 * cells + 1 > most) return known;
   }
 }
 
@@ -162,11 +199,19 @@ std::vector<std::complex<double>> amplitudes_at(const PropagationPaths& paths, c
   return amplitudes;
 }
 
+double response_half_band(const Pulse& pulse) noexcept {
+  return std::min(0.5 * pulse.bandwidth_40db(), pulse.bandwidth_99());
+}
+
 SampledResponse leg_response(const PropagationPaths& paths, const MetLeg& leg, double centre,
                              double half_width) {
   return sampled_response(centre, half_width, leg_response_error,
                           leg.by_waves() ? most_wave_frequencies : most_ray_frequencies,
-                          [&](double f) { return amplitudes_at(paths, leg, f); });
+                          [&](double f) {
+                            std::vector<std::complex<double>> there = amplitudes_at(paths, leg, f);
+                            if (leg.by_waves()) share_unresolved(leg, f, half_width, there);
+                            return there;
+                          });
 }
 
 bool too_narrow_to_change(const MetLeg& leg, double half_width, double least) {

@@ -8,28 +8,29 @@
 #include "sonar/echoes/echo_path.h"
 #include "sonar/paths/moving_paths.h"
 #include "sonar/signal/band_response.h"
+#include "sonar/signal/pulse.h"
 
 namespace asdic::detail {
 
-/// Frequencies at which a leg by waves is computed across a band, at most.
+/// Largest number of frequencies at which a leg by waves is computed across a band.
 inline constexpr std::size_t most_wave_frequencies = 65;
-/// The same of a leg by rays, of which the boundaries' reflection alone is computed.
+/// The same for a leg by rays, of which the boundaries' reflection alone is computed.
 inline constexpr std::size_t most_ray_frequencies = 129;
-/// Of the greatest value across the band: what is left between those frequencies.
-inline constexpr double leg_response_error = 1e-3;
+/// Error that polynomials between those frequencies may have, over the greatest value: −48 dB.
+inline constexpr double leg_response_error = 4e-3;
 
 /// Responses known at a few frequencies of a band, polynomials between them.
 struct SampledResponse {
   BandNodes nodes;
   std::vector<std::vector<std::complex<double>>> values;  ///< [nodes][responses]
-  double error = 0.0;  ///< of the last nodes added, as those before foretold them, over the
-                       ///< greatest, both root sums of squares over the responses
+  double error = 0.0;  ///< largest difference from what was computed between the nodes, over the
+                       ///< greatest value, both root sums of squares over the responses
 
   [[nodiscard]] std::vector<std::complex<double>> at(double frequency) const;
 };
 
-/// At the ends, the middle and so on: Chebyshev–Lobatto points, twice as many until those added are
-/// foretold to `error`, or there are `most`. \param responses  of a frequency [Hz]
+/// Samples responses at Chebyshev–Lobatto points, twice as many until they foretell four of the
+/// next ones to `error`, or there are `most`. \param responses  of a frequency [Hz]
 [[nodiscard]] SampledResponse sampled_response(
     double centre, double half_width, double error, std::size_t most,
     const std::function<std::vector<std::complex<double>>(double)>& responses);
@@ -60,7 +61,13 @@ struct MetLeg {
 [[nodiscard]] std::vector<std::complex<double>> amplitudes_at(const PropagationPaths& paths,
                                                               const MetLeg& leg, double frequency);
 
-/// The same across a band. \param centre, half_width  [Hz]
+/// Half of the band about a pulse's centre in which paths are computed [Hz]: where its spectrum is
+/// less than 40 dB down, or twice as far as 99 % of its energy reach. Beyond it they are as at its
+/// edge.
+[[nodiscard]] double response_half_band(const Pulse& pulse) noexcept;
+
+/// The same across a band. Paths by waves that the band does not resolve share their sum as at the
+/// centre. \param centre, half_width  [Hz]
 [[nodiscard]] SampledResponse leg_response(const PropagationPaths& paths, const MetLeg& leg,
                                            double centre, double half_width);
 

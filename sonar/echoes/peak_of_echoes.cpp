@@ -15,23 +15,20 @@ namespace {
 /// Sums of the envelope in blocks of even steps, loudest first.
 class PeakSearch {
  public:
-  PeakSearch(const Pulse& pulse, std::span<const EchoPath> echoes,
-             std::span<const EchoesOfBand> band)
-      : band_(band), half_pulse_(0.5 * pulse.duration()), frequency_(pulse.centre_frequency()) {
-    double half_band = 0.0, half_duration = 0.0, lowest = infinity, highest = 0.0;
-    for (const EchoesOfBand& part : band) {
-      half_band = std::max(half_band, part.pulse.half_band());
-      half_duration = std::max(half_duration, part.pulse.half_duration());
-    }
-    for (std::size_t i = 0; i < echoes.size(); ++i) {
-      const Return& received = echoes[i].received;
+  PeakSearch(const Pulse& pulse, std::span<const EchoPath> echoes, const BandLimitedPulse& recorded)
+      : recorded_(recorded),
+        half_pulse_(0.5 * pulse.duration()),
+        frequency_(pulse.centre_frequency()) {
+    const double half_duration = recorded.half_duration();
+    double lowest = infinity, highest = 0.0;
+    for (const EchoPath& echo : echoes) {
+      const Return& received = echo.received;
       lowest = std::min(lowest, received.doppler);
       highest = std::max(highest, received.doppler);
       const double beside = (half_duration - half_pulse_) / received.doppler;
       const double last = received.delay + 2.0 * half_pulse_ / received.doppler;
-      const auto& curve = echoes[i].curve;
-      echoes_.push_back({.path = &echoes[i],
-                         .index = i,
+      const auto& curve = echo.curve;
+      echoes_.push_back({.path = &echo,
                          .begin = (curve ? curve->first_received() : received.delay) - beside,
                          .end = (curve ? curve->last_received() : last) + beside});
       longest_ = std::max(longest_, echoes_.back().end - echoes_.back().begin);
@@ -39,8 +36,8 @@ class PeakSearch {
     std::sort(echoes_.begin(), echoes_.end(),
               [](const Echo& a, const Echo& b) { return a.begin < b.begin; });
     // The envelope holds frequencies up to the band of one echo and their Doppler shifts apart.
-    step_ = 0.25 / (half_band * highest + 0.5 * frequency_ * (highest - lowest));
-    weigh(half_duration);
+    step_ = 0.25 / (recorded.half_band() * highest + 0.5 * frequency_ * (highest - lowest));
+    weigh();
   }
 
   [[nodiscard]] double largest() const {
@@ -59,7 +56,6 @@ class PeakSearch {
 
   struct Echo {
     const EchoPath* path;
-    std::size_t index;
     double begin, end;  // between which it is received [s]
     double most = 0.0;  // its largest envelope, at most
   };
@@ -68,16 +64,13 @@ class PeakSearch {
     std::int64_t number;
   };
 
-  /// Bounds every echo by the largest envelopes of the pulses.
-  void weigh(double half_duration) {
+  /// Bounds every echo by the largest envelope of the pulse.
+  void weigh() {
     constexpr double between = 1.05;  // two samples, where one is 0.25/half_band from the next
-    std::vector<double> largest(band_.size(), 0.0);
-    for (std::size_t k = 0; k < band_.size(); ++k)
-      for (double u = -half_duration; u < half_duration; u += step_)
-        largest[k] = std::max(largest[k], between * std::abs(band_[k].pulse.at(u)));
-    for (Echo& echo : echoes_)
-      for (std::size_t k = 0; k < band_.size(); ++k)
-        echo.most += largest[k] * std::abs(band_[k].amplitudes[echo.index]);
+    double largest = 0.0;
+    for (double u = -recorded_.half_duration(); u < recorded_.half_duration(); u += step_)
+      largest = std::max(largest, between * std::abs(recorded_.at(u)));
+    for (Echo& echo : echoes_) echo.most = largest * std::abs(echo.path->received.amplitude);
   }
 
   [[nodiscard]] double time(std::int64_t sample) const {
@@ -134,13 +127,10 @@ class PeakSearch {
         rotate_back(frequency_ * (t[j] - since[j]), cosine[j], sine[j]);
         since[j] -= half_pulse_;
       }
-      for (const EchoesOfBand& part : band_) {
-        part.pulse.at(since, re, im);
-        const std::complex<double> amplitude = part.amplitudes[echo.index];
-        for (std::size_t j = 0; j < looked_at; ++j)
-          sum[j] += finite_product(amplitude,
-                                   finite_product<double>({re[j], im[j]}, {cosine[j], sine[j]}));
-      }
+      recorded_.at(since, re, im);
+      for (std::size_t j = 0; j < looked_at; ++j)
+        sum[j] += finite_product(received.amplitude,
+                                 finite_product<double>({re[j], im[j]}, {cosine[j], sine[j]}));
     });
     double power = 0.0;
     for (std::size_t j = 1; j + 1 < looked_at; ++j) {
@@ -153,7 +143,7 @@ class PeakSearch {
     return std::sqrt(power);
   }
 
-  std::span<const EchoesOfBand> band_;
+  const BandLimitedPulse& recorded_;
   double half_pulse_, frequency_;
   std::vector<Echo> echoes_;
   double longest_ = 0.0, step_ = 1.0;  // of an echo; of the samples [s]
@@ -162,8 +152,8 @@ class PeakSearch {
 }  // namespace
 
 double peak_of_echoes(const Pulse& pulse, std::span<const EchoPath> echoes,
-                      std::span<const EchoesOfBand> band) {
-  return echoes.empty() ? 0.0 : PeakSearch(pulse, echoes, band).largest();
+                      const BandLimitedPulse& recorded) {
+  return echoes.empty() ? 0.0 : PeakSearch(pulse, echoes, recorded).largest();
 }
 
 }  // namespace asdic::detail

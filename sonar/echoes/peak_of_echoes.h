@@ -1,7 +1,5 @@
 #pragma once
-#include <complex>
 #include <span>
-#include <vector>
 
 #include "sonar/echoes/echo_path.h"
 #include "sonar/signal/band_limited_pulse.h"
@@ -9,20 +7,14 @@
 
 namespace asdic::detail {
 
-/// Echoes through one of the responses that serve a pulse's band, or through the only one.
-struct EchoesOfBand {
-  BandLimitedPulse pulse;
-  std::vector<std::complex<double>> amplitudes;  ///< [echoes]
-};
-
 /// Largest envelope of echoes as they add at the array's reference point, over the pulse's peak at
-/// 1 m: the sum of all responses as the phones record it, whether or not the record is that long.
+/// 1 m, with the amplitudes of the centre frequency, whether or not the record is that long.
 /// Echoes may cancel: a direct path and its surface reflection are a period apart or less.
 ///
 /// Only times at which an echo is received are looked at, and of those only as many as may hold the
-/// peak: the cost is at most echoes × samples of a pulse × responses.
-/// Source: docs/theory/echoes.md, "Peak"
+/// peak: the cost is at most echoes × samples of a pulse.
+/// Source: docs/theory/echoes.md, "Peak" \param recorded  the pulse as the phones record it
 [[nodiscard]] double peak_of_echoes(const Pulse& pulse, std::span<const EchoPath> echoes,
-                                    std::span<const EchoesOfBand> band);
+                                    const BandLimitedPulse& recorded);
 
 }  // namespace asdic::detail

@@ -84,8 +84,10 @@ class WideBand {
       : context_(context),
         projector_(projector),
         centre_(context.pulse->centre_frequency()),
-        half_width_(Synthesizer(*context.pulse, recording, max_doppler, context.paths.memory())
-                        .half_band()),
+        half_width_(
+            std::min(response_half_band(*context.pulse),
+                     Synthesizer(*context.pulse, recording, max_doppler, context.paths.memory())
+                         .half_band())),
         legs_(context.paths, paths, [&](const MetLeg& leg) {
           return leg_response(context.paths, leg, centre_, half_width_);
         }) {
@@ -110,8 +112,8 @@ class WideBand {
   [[nodiscard]] const ChangingLegs<SampledResponse>& legs() const noexcept { return legs_; }
   [[nodiscard]] BandPart part(std::size_t k) const {
     BandPart part = band_part(context_, projector_, std::max(1.0, nodes_.frequencies[k]));
-    part.filter = [nodes = nodes_, k, centre = centre_](double beside) {
-      return nodes.basis(k, centre + beside);
+    part.filter = [nodes = nodes_, k](double beside) {
+      return nodes.basis(k, nodes.centre + std::clamp(beside, -nodes.half_width, nodes.half_width));
     };
     return part;
   }
@@ -190,18 +192,19 @@ bool across_the_band(const EchoContext& context, const Transmitter& projector,
          tolerable_change;
 }
 
-std::vector<SoundOfBand> across_band(const EchoContext& context, const Transmitter& projector,
-                                     std::span<const EchoPath> paths, const Recording& recording,
-                                     double max_doppler) {
+Baseband wide_band_sound(const EchoContext& context, const Transmitter& projector,
+                         std::span<const EchoPath> paths, std::span<const Vec3> phones,
+                         const Recording& recording, double max_doppler) {
   double longest = 0.0;
   for (const EchoPath& path : paths) longest = std::max(longest, path.response.path_length);
   const WideBand band(context, projector, paths, longest, recording, max_doppler);
-  std::vector<SoundOfBand> all;
+  Baseband all;
+  std::vector<EchoPath> filtered(paths.begin(), paths.end());
   for (std::size_t k = 0; k < band.nodes().frequencies.size(); ++k) {
-    SoundOfBand& sound = all.emplace_back(SoundOfBand{band.part(k), {}});
+    const BandPart at = band.part(k);
     std::unordered_map<const SampledResponse*, std::vector<std::complex<double>>> known;
     std::vector<std::span<const std::complex<double>>> of_path;
-    for (const EchoPath& path : paths) {
+    for (EchoPath& path : filtered) {
       of_path.clear();
       for (const PathOnLeg& on : path.legs) {
         const SampledResponse* leg = band.legs().of(on);
@@ -210,29 +213,16 @@ std::vector<SoundOfBand> across_band(const EchoContext& context, const Transmitt
           continue;
         }
         const auto [found, is_new] = known.try_emplace(leg);
-        if (is_new) found->second = leg->at(sound.part.frequency);
+        if (is_new) found->second = leg->at(at.frequency);
         of_path.emplace_back(found->second);
       }
-      sound.amplitudes.push_back(
-          path.response.without_pattern *
-          sound.part.pattern.towards(path.response.bearing, path.response.elevation) *
-          response_of(path, sound.part, of_path));
+      path.received.amplitude = path.response.without_pattern *
+                                at.pattern.towards(path.response.bearing, path.response.elevation) *
+                                response_of(path, at, of_path);
     }
-  }
-  return all;
-}
-
-Baseband wide_band_sound(const EchoContext& context, const Transmitter& projector,
-                         std::span<const EchoPath> paths, std::span<const Vec3> phones,
-                         const Recording& recording, double max_doppler) {
-  Baseband all;
-  std::vector<EchoPath> filtered(paths.begin(), paths.end());
-  for (const SoundOfBand& one : across_band(context, projector, paths, recording, max_doppler)) {
-    for (std::size_t i = 0; i < filtered.size(); ++i)
-      filtered[i].received.amplitude = one.amplitudes[i];
     Baseband sound = narrow_band_sound(
-        Synthesizer(*context.pulse, recording, max_doppler, one.part.filter), filtered, phones);
-    if (all.channels == 0)
+        Synthesizer(*context.pulse, recording, max_doppler, at.filter), filtered, phones);
+    if (k == 0)
       all = std::move(sound);
     else
       std::transform(sound.values.begin(), sound.values.end(), all.values.begin(),

@@ -1,5 +1,4 @@
 #pragma once
-#include <complex>
 #include <functional>
 #include <span>
 #include <vector>
@@ -47,19 +46,6 @@ inline constexpr double tolerable_change = 0.06;
 [[nodiscard]] Baseband narrow_band_sound(const Synthesizer& synthesizer,
                                          std::span<const EchoPath> paths,
                                          std::span<const Vec3> phones);
-
-/// Paths at one of the frequencies that serve a pulse's band.
-struct SoundOfBand {
-  BandPart part;
-  std::vector<std::complex<double>> amplitudes;  ///< [paths]
-};
-
-/// Amplitudes of paths with the water's absorption, the transmitter's pattern, the boundaries'
-/// reflection and waves at every frequency that the band needs. \param projector  as it pings
-[[nodiscard]] std::vector<SoundOfBand> across_band(const EchoContext& context,
-                                                   const Transmitter& projector,
-                                                   std::span<const EchoPath> paths,
-                                                   const Recording& recording, double max_doppler);
 
 /// The same with the water's absorption, the transmitter's pattern, the boundaries' reflection and
 /// the amplitudes of waves at every frequency of the pulse: K pulses, each passed through one of

@@ -167,6 +167,21 @@ std::vector<EchoPath> PingSimulator::sparse_returns(const EchoContext& context,
   return received;
 }
 
+/// A recording of the same kind that holds all echoes, whenever they are received.
+static Recording around(Recording recording, const Pulse& pulse, std::span<const EchoPath> echoes) {
+  double first = infinity, last = -infinity;
+  for (const EchoPath& echo : echoes) {
+    const Return& received = echo.received;
+    first = std::min(first, echo.curve ? echo.curve->first_received() : received.delay);
+    last = std::max(last, echo.curve ? echo.curve->last_received()
+                                     : received.delay + pulse.duration() / received.doppler);
+  }
+  recording.start = first;
+  recording.samples =
+      static_cast<std::size_t>(std::ceil((last - first) * recording.sample_rate)) + 1;
+  return recording;
+}
+
 std::vector<BandPart> PingSimulator::band_of(const EchoContext& context, const Emission& emission,
                                              const PingRecord& record,
                                              std::span<const EchoPath> loudest, double last) const {
@@ -178,24 +193,16 @@ std::vector<BandPart> PingSimulator::band_of(const EchoContext& context, const E
 
 double PingSimulator::peak_of(const Emission& emission, int array, std::span<const EchoPath> echoes,
                               PingRecord& record) const {
+  if (echoes.empty()) return 0.0;
   const Recording recording = recording_of(scenario_);
-  std::vector<EchoesOfBand> band;
-  const auto add = [&](std::vector<std::complex<double>> amplitudes,
-                       const std::function<double(double)>& filter) {
-    band.push_back(
-        {recorded_pulse(emission.pulse, recording, max_doppler_, filter), std::move(amplitudes)});
-  };
   const EchoContext context = echo_context(emission, array, record);
-  if (across_the_band(context, emission.projector, echoes)) {
-    for (SoundOfBand& one :
-         across_band(context, emission.projector, echoes, recording, max_doppler_))
-      add(std::move(one.amplitudes), one.part.filter);
-  } else {
-    std::vector<std::complex<double>> amplitudes;
-    for (const EchoPath& echo : echoes) amplitudes.push_back(echo.received.amplitude);
-    add(std::move(amplitudes), {});
-  }
-  return peak_of_echoes(emission.pulse, echoes, band);
+  if (!across_the_band(context, emission.projector, echoes))
+    return peak_of_echoes(emission.pulse, echoes,
+                          recorded_pulse(emission.pulse, recording, max_doppler_));
+  const std::vector<Vec3> reference_point = {Vec3::Zero()};
+  return largest_envelope(wide_band_sound(context, emission.projector, echoes, reference_point,
+                                          around(recording, emission.pulse, echoes), max_doppler_),
+                          0);
 }
 
 /// Of the targets whose pairs of paths are too many to be gridded one by one.

@@ -49,7 +49,8 @@ AcrossThePulse across_the_pulse(const PropagationPaths& paths, const MetLeg& leg
   }
   if (band == BandOfLosses::narrow) return found;
   const bool followed = band == BandOfLosses::wide || found.change > tolerable_change;
-  return {.error = followed ? leg_response(paths, leg, leg.frequency, half).error : 0.0};
+  if (!followed) return {};
+  return {.error = leg_response(paths, leg, leg.frequency, response_half_band(pulse)).error};
 }
 
 /// "" where the amplitudes of the centre will do, or those across the band are known.
