@@ -6,9 +6,24 @@
 namespace asdic::detail {
 namespace {
 
+constexpr double beside = 1e-3;  // [m]
+
+/// The sample of the profile nearest to a depth, if it is that near.
+double kink_near(const Environment& environment, double depth) noexcept {
+  const auto samples =
+      environment.section ? environment.section->depths() : environment.water.depths();
+  const auto next = std::lower_bound(samples.begin(), samples.end(), depth - beside);
+  double nearest = depth, least = beside;
+  for (auto sample = next; sample != samples.end() && *sample <= depth + beside; ++sample)
+    if (const double apart = std::abs(*sample - depth); apart <= least) {
+      least = apart;
+      nearest = *sample;
+    }
+  return nearest;
+}
+
 LevelRays level_within(double share_of_wavelength, const Environment& environment, double frequency,
                        double range, double depth) noexcept {
-  constexpr double beside = 1e-3;  // [m]
   const double here = sound_speed(environment, range, depth).c;
   // Away from the depth, as it is at the depth itself: at a smooth minimum it is nothing there.
   const auto rise = [&](double off) {
@@ -19,7 +34,9 @@ LevelRays level_within(double share_of_wavelength, const Environment& environmen
   constexpr double least_gradient = 1e-6;  // [1/s]
   if (!(g > least_gradient)) return {};
   const double height = share_of_wavelength * here / frequency;
-  return {.angle = std::sqrt(2.0 * g * height / here), .height = height};  // h = cα²/(2g)
+  return {.angle = std::sqrt(2.0 * g * height / here),  // h = cα²/(2g)
+          .height = height,
+          .depth = kink_near(environment, depth)};
 }
 
 }  // namespace

@@ -89,14 +89,15 @@ struct ColumnSearch {
         columns_(columns),
         max_turns_(max_turns),
         level_(level_rays(tracer.environment(), tracer.frequency(), source_range, source_depth)),
-        level_height_(
-            level_paths(tracer.environment(), tracer.frequency(), source_range, source_depth)
-                .height),
+        level_paths_(
+            level_paths(tracer.environment(), tracer.frequency(), source_range, source_depth)),
         test_(tracer.environment(), columns),
         roots_(tracer, source_range, source_depth, limits, columns) {}
 
   void trace(double angle, FanRay& out) {
-    tracer_.trace(source_range_, source_depth_, angle, limits_, trajectory_);
+    const bool along_kink = level_.angle > 0.0 && angle == 0.0;
+    const double depth = along_kink ? level_.depth : source_depth_;
+    tracer_.trace(source_range_, depth, angle, limits_, trajectory_);
     cost_.add(trajectory_.segments.size());
     digest(trajectory_, tracer_.environment(), columns_, out);
   }
@@ -122,7 +123,7 @@ struct ColumnSearch {
     const RootFinder::Found found = [&](std::uint32_t receiver, Arrival&& path) {
       out.push_back({receiver, std::move(path)});
     };
-    if (level(a, b)) return roots_.search_level(a, b, level_height_, max_turns_, found);
+    if (level(a, b)) return roots_.search_level(a, b, level_paths_, max_turns_, found);
     roots_.search(a, b, max_turns_, found);
   }
 
@@ -138,7 +139,7 @@ struct ColumnSearch {
   std::span<const ReceiverColumn> columns_;
   int max_turns_;
   LevelRays level_;
-  double level_height_;  // of receivers that have the level one
+  LevelRays level_paths_;  // of receivers that have the level one
   NeighbourTest test_;
   RootFinder roots_;
   RayTrajectory trajectory_;

@@ -44,12 +44,13 @@ void RootFinder::search(const FanRay& a, const FanRay& b, int max_turns, const F
   search_families(first, whole_ray(1, middle), last, 0, 3);
 }
 
-void RootFinder::search_level(const FanRay& a, const FanRay& b, double height, int max_turns,
-                              const Found& found) {
+void RootFinder::search_level(const FanRay& a, const FanRay& b, const LevelRays& level,
+                              int max_turns, const Found& found) {
   found_ = &found;
   max_turns_ = max_turns;
   if (a.angle <= 0.0 && b.angle >= 0.0) {
-    trace(0.0, limits_, ray_);
+    tracer_.trace(source_range_, level.depth, 0.0, limits_, ray_);
+    cost_.add(ray_.segments.size());
     std::vector<LegOfRay> legs;
     split_into_legs(ray_, tracer_.environment(), legs);
     for (const ReceiverColumn& column : columns_) {
@@ -57,7 +58,7 @@ void RootFinder::search_level(const FanRay& a, const FanRay& b, double height, i
       if (!there.real) continue;
       column_ = &column;
       const auto on_it =
-          column.between(there.crossing.depth - height, there.crossing.depth + height);
+          column.between(there.crossing.depth - level.height, there.crossing.depth + level.height);
       for (std::size_t i = on_it.first; i < on_it.last; ++i)
         found(column.indices[i], arrival(there, column.depths[i]));
     }

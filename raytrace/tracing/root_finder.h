@@ -4,6 +4,7 @@
 
 #include "raytrace/math/hermite.h"
 #include "raytrace/ocean/arrivals.h"
+#include "raytrace/ocean/level_rays.h"
 #include "raytrace/tracing/fan_ray.h"
 #include "raytrace/tracing/marching_eigenrays.h"
 #include "raytrace/tracing/ray_family.h"
@@ -34,8 +35,8 @@ class RootFinder {
   void search(const FanRay& a, const FanRay& b, int max_turns, const Found& found);
   /// The same of rays that stay on a kink of least sound speed up to their first reflection
   /// (LevelRays): on the first leg the level ray stands for all of them.
-  /// \param height  receivers so close to its depth are on it [m]
-  void search_level(const FanRay& a, const FanRay& b, double height, int max_turns,
+  /// \param level  where it runs, and how close to it receivers are on it
+  void search_level(const FanRay& a, const FanRay& b, const LevelRays& level, int max_turns,
                     const Found& found);
 
   [[nodiscard]] const SearchCost& cost() const noexcept { return cost_; }  ///< so far

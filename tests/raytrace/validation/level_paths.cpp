@@ -156,5 +156,43 @@ TEST(LevelPaths, SoIsItOnTheAxisOfAPchipProfile) {
         expect_flat_rays(water, 200.0, source, 100.0 + apart, range, 5.0, 1e-2);
 }
 
+// Along a kink of least speed the level ray is straight, q = r, from a source on it and from one
+// that differs from it by less than λ/1000 (7.5 mm): the marched ray from there would wind about
+// the kink, with a q of centimetres and less. Truth: the layered solver's paths where all profiles
+// are one, and in any section those from the kink itself. Half a millimetre of depth changes speeds
+// by 0.5 mm · 0.05 1/s, so delays by 7 ns; and both ends of a path at 10° by sin 10°/c each.
+TEST(LevelPaths, OnAKinkOfASectionTheLevelRayIsOneFromBesideItAsWell) {
+  const std::vector<double> range = {0.0, 1200.0}, depth = {0.0, 25.0, 50.0};
+  const std::vector<double> profile = {1496.75, 1495.5, 1495.75};
+  Environment layered;
+  layered.water = SoundSpeedProfile::table(depth, profile, Interpolation::c_linear);
+  layered.bottom = {.depth = 50.0, .material = FluidHalfSpace{}};
+  Environment section = layered, sheared = layered;
+  std::vector<double> twice = profile;
+  twice.insert(twice.end(), profile.begin(), profile.end());
+  section.section = SoundSpeedSection(range, depth, twice);
+  sheared.section = SoundSpeedSection(
+      range, depth, std::vector{1495.75, 1495.0, 1495.75, 1497.75, 1496.0, 1495.75});
+  const EigenraySolver in_layers(layered), in_section(section), in_shear(sheared);
+  const Arrivals truth = in_layers.find(25.0, 25.0, 600.0, 200.0, one_bounce),
+                 in_shear_truth = in_shear.find(25.0, 25.0, 600.0, 200.0, one_bounce);
+  ASSERT_EQ(truth.size(), 6U);
+  const auto expect_same = [](const Arrivals& wanted, const Arrivals& found, double away) {
+    ASSERT_EQ(found.size(), wanted.size()) << away;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      EXPECT_NEAR(found[i].delay, wanted[i].delay, 1e-8 + 2.4e-4 * std::abs(away))
+          << away << ' ' << i;
+      EXPECT_NEAR(found[i].q, wanted[i].q, 1e-3 * std::abs(wanted[i].q)) << away << ' ' << i;
+      EXPECT_EQ(found[i].caustics, wanted[i].caustics) << away << ' ' << i;
+    }
+  };
+  for (const double away : {0.0, 2.5e-11, -2.5e-11, 1e-6, -1e-6, 5e-4, -5e-4})
+    for (const double there : {25.0, 25.0 + away}) {
+      expect_same(truth, in_section.find(25.0 + away, there, 600.0, 200.0, one_bounce), away);
+      expect_same(in_shear_truth, in_shear.find(25.0 + away, there, 600.0, 200.0, one_bounce),
+                  away);
+    }
+}
+
 }  // namespace
 }  // namespace asdic::detail
