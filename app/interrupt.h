@@ -8,8 +8,8 @@
 
 namespace asdic::detail::app {
 
-/// From now on SIGINT, SIGTERM and SIGHUP end the program at once, without what is of no use until
-/// it is whole (io/files/unfinished.h). One that was ignored stays so.
+/// Makes SIGINT, SIGTERM and SIGHUP end the program at once, after they have removed its unfinished
+/// files (io/files/unfinished.h). A signal that was ignored stays ignored.
 void end_cleanly_on_signals();
 
 /// While it lives, the first SIGINT, SIGTERM or SIGHUP is noted, and the second ends the program at

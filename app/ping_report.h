@@ -20,7 +20,7 @@ class PingReport {
   explicit PingReport(const Scenario& scenario) : scenario_(scenario) {}
 
   void add(const PingRecord& record);
-  /// The first echo that its record does not hold whole, as a warning; empty: none.
+  /// Warning of the first echo that its record does not hold completely; empty: none.
   [[nodiscard]] const std::string& echo_beside_record() const noexcept { return beside_record_; }
   /// \param wall  of the whole run [s]
   [[nodiscard]] std::string text(double wall) const;

@@ -41,7 +41,7 @@ void check_free(const std::filesystem::path& output, bool force) {
                       .expected = "another name (-o), or --force to write over it"});
 }
 
-/// What a part is worth, for people.
+/// Text that says how many whole pings a part holds, or why it cannot be recovered.
 std::string worth_of(const std::filesystem::path& part) {
   try {
     const OutputLock still_at_work(target_of(part));
@@ -57,7 +57,7 @@ std::string worth_of(const std::filesystem::path& part) {
   }
 }
 
-/// The parts in a folder that runs have left which did not end.
+/// Prints each part that an unfinished run has left in a folder, with what it is worth.
 int list_parts(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> parts;
   for (const auto& entry : std::filesystem::directory_iterator(folder))

@@ -211,10 +211,10 @@ std::string all_text(const NotedSettings& noted) {
   return text;
 }
 
-/// Processor time that looking at the paths of a ping may take [s].
+/// Processor time that each look at the paths of a ping may take [s].
 constexpr double most_seconds = 3.0;
 
-/// Does some work, and calls it off when it has taken that. \return whether it came to its end
+/// Does some work, and calls it off after `most_seconds`. \return whether the work was completed
 bool done_in_time(const std::function<void()>& work) {
   std::stop_source too_long;
   std::mutex mutex;

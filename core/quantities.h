@@ -12,17 +12,17 @@ inline constexpr Quantity water_depth{
     .noun = "depth", .unit = "m", .low = -20000.0, .high = 20000.0};
 inline constexpr Quantity range{.noun = "range", .unit = "m", .low = -1e10, .high = 1e10};
 inline constexpr Quantity velocity{.noun = "velocity", .unit = "m/s", .low = -100.0, .high = 100.0};
-/// From a period of the highest frequency on.
+/// Length of time, at least one period of the highest frequency.
 inline constexpr Quantity duration{.noun = "duration", .unit = "s", .low = 1e-6, .high = 1e5};
 inline constexpr Quantity pulse_duration{.noun = "duration", .unit = "s", .low = 1e-6, .high = 1e3};
-/// Of sound: from where the sea is shallow beside a wavelength.
+/// Frequency of sound. At the lowest one the deepest sea is about one wavelength deep.
 inline constexpr Quantity frequency{.noun = "frequency", .unit = "Hz", .low = 0.1, .high = 1e6};
-/// Of one frequency from another, and of what changes slowly.
+/// Distance of two frequencies, or the frequency of a slow change, such as a modulation.
 inline constexpr Quantity frequency_step{
     .noun = "frequency", .unit = "Hz", .low = 1e-5, .high = 1e6};
-/// From one ping to the next.
+/// Time from one ping to the next.
 inline constexpr Quantity interval{.noun = "interval", .unit = "s", .low = 1e-6, .high = 1e7};
-/// Samples of a sound that a scenario holds, of any unit, and how many a second.
+/// One sample of a sound that stands in a scenario, in any unit, and the rate of the samples.
 inline constexpr Quantity sound_sample{.noun = "sample", .low = -1e30, .high = 1e30};
 inline constexpr Quantity sound_rate{.noun = "sample rate", .unit = "Hz", .low = 0.1, .high = 1e9};
 inline constexpr Quantity level{.noun = "level", .unit = "dB", .low = -300.0, .high = 400.0};

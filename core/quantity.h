@@ -13,7 +13,7 @@ struct Quantity {
   double low = -infinity;
   double high = infinity;
   bool above = false;               ///< `low` itself is not allowed
-  bool or_zero = false;             ///< or 0, where `low` is above it: there is none of it
+  bool or_zero = false;             ///< 0 is allowed, too, although `low` is above 0
   std::string_view reference = "";  ///< of a level: "1 µPa at 1 m"
 
   [[nodiscard]] bool holds(double value) const;

@@ -11,7 +11,7 @@ namespace asdic::detail {
 /// The shortest decimal that reads back as the same number.
 [[nodiscard]] std::string to_text(double number);
 
-/// As printf makes it, of any length: nothing is cut.
+/// Text as printf formats it, of any length.
 [[nodiscard, gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...);
 [[nodiscard]] std::string formatted_list(const char* format, std::va_list values);
 

@@ -18,10 +18,10 @@ struct Utf8Character {
 /// All of a text is UTF-8.
 [[nodiscard]] bool is_utf8(std::string_view text);
 
-/// The beginning of a text that fits into so many bytes, of whole characters.
+/// Longest beginning of a text that fits into so many bytes without cutting a character.
 [[nodiscard]] std::string_view cut_to_bytes(std::string_view text, std::size_t bytes);
 
-/// A text as UTF-8: U+FFFD stands for every byte that is none.
+/// Returns a text as valid UTF-8; U+FFFD takes the place of every byte that is not part of it.
 [[nodiscard]] std::string as_utf8(std::string_view text);
 
 }  // namespace asdic::detail

@@ -85,8 +85,8 @@ struct FactorFound {
 class FactorFinder {
  public:
   FactorFinder() = default;
-  /// \param step  of the bank's factors   \param filters  of the bank, three at least
-  /// \param cell  as of doppler_cell()
+  /// \param step  between the bank's factors   \param filters  number in the bank, three at least
+  /// \param cell  width of a Doppler cell, as doppler_cell() returns it
   FactorFinder(const Replica& replica, double step, std::size_t filters, double cell,
                int sub_bands);
 

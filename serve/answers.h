@@ -25,7 +25,7 @@ struct ServedPing {
   double latency = 0.0;       ///< from when it was to be sent to when its data were complete [s]
   double behind = 0.0;        ///< it was sent so long after its time [s]
   std::vector<std::string> warnings = {};  ///< about this ping
-  bool scheduled = false;                  ///< by the schedule: it answers no command
+  bool scheduled = false;                  ///< sent by the schedule, so that it answers no command
 };
 
 /// A block of what is heard, and its samples, which go to its sink if it has one.

@@ -41,7 +41,7 @@ class Connection {
   void stop();
   /// Why the client's handshake was refused; "": it was not.
   [[nodiscard]] const std::string& refused() const noexcept;
-  /// Why answers could not be written, but for a client that has gone.
+  /// Error of the write that failed; none where all was written or the client has closed its end.
   [[nodiscard]] std::error_code unwritten() const noexcept;
 
  private:

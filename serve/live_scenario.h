@@ -55,8 +55,9 @@ class LiveScenario {
   [[nodiscard]] const TomlValue& document() const noexcept { return document_; }
 
   /// The command `update`: all of it, or nothing. \param fields  of the command
-  /// \param now  at which the positions are meant where it does not say [s]
-  /// \return false where everything is already as it wants: nothing changes then \throws Refusal
+  /// \param now  time of the positions where the command gives none [s]
+  /// \return false if everything is already as the command asks, so that nothing changes
+  /// \throws Refusal
   bool update(const TomlValue& fields, double now);
   /// From now on tracks keep where things were, from a time on: what is received now was sent and
   /// struck before. Samples follow without gaps, and their rate stays. \throws Refusal

@@ -60,8 +60,8 @@ bool has_place(const TomlValue& table) {
   return std::ranges::any_of(keys, [&](const char* key) { return table.find(key) != nullptr; });
 }
 
-/// Whether a track has this place and velocity at a time, but for the rounding of decimal numbers,
-/// and no turn after it.
+/// Whether a track has this place and velocity at a time, to the rounding of decimal numbers, and
+/// no turn after it.
 bool goes_on(const Track& track, double time, const Kinematics& state) {
   const Kinematics there = track.at(time);
   const double off = (state.position - there.position).norm(),

@@ -25,7 +25,7 @@ struct Wrong {
   std::string got, expected = "what --log has written";
 };
 
-/// As a log has them: what a client may send, with every number written out, and its times.
+/// Longest line of a log [bytes]: a client's longest line with every number written out, and times.
 std::size_t longest_line(const SessionSettings& settings) {
   constexpr std::size_t longer = 8, times = 4096;
   return longer * settings.limits.line_bytes + CommandLog::first_line(settings).size() + times;

@@ -54,7 +54,7 @@ struct Update {
   std::vector<std::string> changed = {};  ///< sections
 };
 
-/// Whether two values are the same: numbers by what they amount to, tables in whatever order.
+/// Whether two values are equal, where 1 equals 1.0 and the order of a table's keys does not count.
 bool same_value(const TomlValue& a, const TomlValue& b) {
   const auto number = [](const TomlValue& one) -> std::optional<double> {
     if (const auto* real = std::get_if<double>(&one.data)) return *real;
@@ -77,14 +77,14 @@ bool same_value(const TomlValue& a, const TomlValue& b) {
   return true;
 }
 
-/// Whether a section is what it was; what a file holds may have changed under its name.
+/// Whether a section is unchanged. One that names a file is not, as its contents may have changed.
 bool is_as_before(const TomlValue& document, const TomlValue& before, const std::string& section) {
   const TomlValue *now = find_at(document, section), *then = find_at(before, section);
   return now != nullptr && then != nullptr && now->find("file") == nullptr &&
          same_value(*now, *then);
 }
 
-/// Writes all targets as a list in which each has its name.
+/// Writes the targets as a list of tables, each with its name.
 void name_targets(const Scenario& scenario, TomlValue& document) {
   TomlValue::Array targets;
   for (TomlValue* table : tables_of(document, "target")) {

@@ -24,8 +24,8 @@ struct UpdateContext {
 
 /// Writes what a client wants into the tree of a scenario's file. What may change is what its
 /// description calls `live` (serve/client_names.h), and nothing else.
-/// \return the sections that changed, "platform", "environment.wind_speed"; none where everything
-/// is already as the client wants it
+/// \return the sections that changed, such as "platform" or "environment.wind_speed"; none if
+/// everything is already as the client asks
 /// \throws Refusal ("value", "file") naming the command's key
 std::vector<std::string> apply_update(const TomlValue& fields, const UpdateContext& context,
                                       TomlValue& document);

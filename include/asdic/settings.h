@@ -36,9 +36,9 @@ struct Setting {
   std::string path;  ///< "pulse.duration", "target[].strength_db"
   Kind kind = Kind::number;
   std::string unit;                                          ///< "m"; "": none
-  double lowest = -std::numeric_limits<double>::infinity();  ///< that it may be
+  double lowest = -std::numeric_limits<double>::infinity();  ///< least value that is allowed
   double highest = std::numeric_limits<double>::infinity();
-  bool or_zero = false;            ///< or 0, where `lowest` is above it
+  bool or_zero = false;            ///< 0 is allowed, too, though below `lowest`
   std::vector<std::string> words;  ///< that there are; of a number, in its place: "auto"
   std::size_t length = 0;          ///< of a vector
   std::string standard;            ///< what holds without it, as TOML; "": none, or of others

@@ -28,7 +28,7 @@ struct OceanSources {
   std::vector<DataFile> sediment{};                 ///< grain sizes or classes; {}: by depth
 
   [[nodiscard]] std::vector<DataFile> all() const;
-  /// Their paths: what no result is written over.
+  /// Paths of all these files. No result may be written over one of them.
   [[nodiscard]] std::vector<std::filesystem::path> paths() const;
 };
 

@@ -6,8 +6,8 @@ namespace asdic::detail {
 
 /// While it lives, every file that io opens for reading is noted (by device and inode), so that no
 /// result is written over one of them: the scenario, and whatever it names. The program has one for
-/// each command; a library that has none notes nothing. One at a time. Children that read for this
-/// process (io/isolated) note nothing here: it does so itself, by require_file().
+/// each command; a library that has none notes nothing. One at a time. What child processes
+/// (io/isolated) read is not noted by them, so this process notes it by require_file().
 class FilesRead {
  public:
   FilesRead();

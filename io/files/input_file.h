@@ -34,7 +34,8 @@ class InputFile {
 /// What a reader finds under a name, for messages: "no such file", "a folder", "a file".
 [[nodiscard]] std::string what_is_at(const std::filesystem::path& path);
 
-/// For libraries that open a file by its name: it counts as read. \throws InputError as InputFile
+/// Checks a file that a library is going to open by its name, and notes it as read (FilesRead).
+/// \throws InputError as InputFile
 void require_file(const std::filesystem::path& path, const std::string& expected);
 
 /// A whole file. \throws InputError as InputFile

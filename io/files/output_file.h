@@ -17,12 +17,12 @@ using Recognise = bool (*)(const std::filesystem::path& path);
 /// What a result may be written over.
 struct OutputRules {
   Recognise own = nullptr;    ///< what counts as ours; none: no file
-  Recognise worth = nullptr;  ///< parts of runs that did not end which are kept; none: no part is
+  Recognise worth = nullptr;  ///< unfinished parts that are worth keeping; none: no part
   bool force = false;         ///< any file, but never one of those below
   std::vector<std::filesystem::path> inputs{};  ///< that the run reads, beside those it has read
-  /// The run itself reads what is there before it writes it anew: that makes it no input.
+  /// The run replaces the target after it has read it, so the target is not one of its inputs.
   bool renews = false;
-  std::string option = "--output";  ///< that names the result, for messages
+  std::string option = "--output";  ///< option that names the result, for messages
 };
 
 /// That a result may have a name: in a folder that is there, not a folder, link, device, FIFO or
@@ -34,9 +34,9 @@ void check_output(const std::filesystem::path& target, const OutputRules& rules)
 ///
 /// It is written beside its target under a name that nobody had before (TARGET.k3f9.part), brought
 /// to the disk, and renamed. Nobody else writes the same target meanwhile (OutputLock). Without
-/// finish() the part goes, and only the part. A signal that ends the program takes the part away
-/// (Unfinished); what `kill -9` has left goes when the next run of this target is whole, unless it
-/// is worth something.
+/// finish() the part goes, and only the part. A signal that ends the program removes the part
+/// (Unfinished). A part that is left after `kill -9` is removed when the next run of this target
+/// is complete, unless it is worth keeping (OutputRules::worth).
 class OutputFile {
  public:
   /// Before the work: checks the target and takes the lock. \throws InputError, RunError
@@ -65,7 +65,7 @@ class OutputFile {
   OutputLock lock_;
   std::filesystem::path part_{};  ///< "": not made, or renamed
   bool kept_ = false;
-  std::optional<Unfinished> unfinished_{};  ///< the part, until it is worth something
+  std::optional<Unfinished> unfinished_{};  ///< the part, until keep() or finish()
 };
 
 /// Parts of a target that other runs have left, sorted by name.

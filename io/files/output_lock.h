@@ -6,10 +6,10 @@
 
 namespace asdic::detail {
 
-/// Whether an error of flock or fcntl says that the file system has no locks, as some over a
-/// network have none.
+/// Whether an error number of flock or fcntl says that the file system has no locks, as is so of
+/// some network file systems.
 [[nodiscard]] bool says_no_locks(int error) noexcept;
-/// Whether the system refuses locks on a file that is there: who needs one goes on without.
+/// Whether the system refuses locks on an existing file. Callers then go on without a lock.
 [[nodiscard]] bool refuses_locks(const std::filesystem::path& path);
 
 /// The right to write a result: one process at a time has it, from before the work until the result
@@ -28,7 +28,7 @@ class OutputLock {
   OutputLock(OutputLock&& other) noexcept;
   OutputLock& operator=(OutputLock&&) = delete;
 
-  /// Whether nobody else can have it: false where the file system knows no locks.
+  /// Whether other processes are kept out; false where the file system has no locks.
   [[nodiscard]] bool alone() const noexcept { return alone_; }
 
  private:

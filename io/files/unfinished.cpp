@@ -19,7 +19,7 @@ struct Slot {
   std::array<char, PATH_MAX> name;
 };
 
-/// A command has a few; those of a server that find no slot are as they were before.
+/// Table of the names. A command needs few of them; a name that finds no free slot is not removed.
 std::array<Slot, 32> slots;
 
 }  // namespace

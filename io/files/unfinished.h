@@ -3,8 +3,9 @@
 
 namespace asdic::detail {
 
-/// The name of a file of this process that is of no use until it is whole: a part, a lock. While it
-/// lives, a signal that ends the program takes the file away (remove_unfinished()).
+/// The name of a file of this process that is useless until it is complete, such as a part or a
+/// lock. While the object lives, a signal that ends the program removes the file
+/// (remove_unfinished()).
 class Unfinished {
  public:
   explicit Unfinished(const std::filesystem::path& path) noexcept;
@@ -16,8 +17,8 @@ class Unfinished {
   int slot_;  ///< in the table of names; -1: none
 };
 
-/// Removes all of them. For handlers of signals that end the program: it allocates nothing and
-/// takes no lock.
+/// Removes the files of all Unfinished objects. Safe in a signal handler, as it allocates nothing
+/// and takes no lock.
 void remove_unfinished() noexcept;
 
 }  // namespace asdic::detail

@@ -7,7 +7,7 @@ namespace asdic::detail::own {
 
 /// HDF5 whose root attribute `filetype` begins with "asdic ".
 [[nodiscard]] bool hdf5(const std::filesystem::path& path);
-/// Pings of a run that did not end, in HDF5: `asdic recover` makes a file of them.
+/// An unfinished HDF5 file with whole pings in it, of which `asdic recover` makes a ping file.
 [[nodiscard]] bool pings(const std::filesystem::path& path);
 /// A sound file whose software is asdic, or, of before it said so, with our scale beside it.
 [[nodiscard]] bool sound(const std::filesystem::path& path);

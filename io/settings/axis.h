@@ -4,7 +4,7 @@
 
 namespace asdic::detail {
 
-/// The most values of { first, last, count }.
+/// Largest `count` of { first, last, count }.
 inline constexpr int most_on_an_axis = 10'000'000;
 
 /// `count` values from first to last, both included: what { first, last, count } stands for.

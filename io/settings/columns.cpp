@@ -87,7 +87,7 @@ void require_rows_in_order(const Columns& columns, const Allowed& allowed,
 
 bool is_depth(const Columns& columns) { return columns.quantities[0].noun == "depth"; }
 
-/// How far rows lie apart at least: of places a micrometre, within which nothing is known of a sea.
+/// Least distance of two rows: 1 µm for places, because no sea is known more finely; else none.
 double least_step(const Columns& columns) { return columns.quantities[0].unit == "m" ? 1e-6 : 0.0; }
 
 }  // namespace

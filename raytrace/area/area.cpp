@@ -15,8 +15,8 @@ constexpr double straight_error = 0.04;  // of speeds between the levels of sect
 constexpr int land = -1;                 // as a kind of sea floor
 constexpr int unmapped = -2;             // the one kind of a sea floor without a map of kinds
 
-/// How far a map goes on from a place along a bearing, to `most` m, its edge to a millimetre [m].
-/// \param step  by which it is looked for [m]
+/// Distance from a place along a bearing to the edge of a map, to a millimetre, at most `most` [m].
+/// \param step  of the search for the edge [m]
 template <class Map>
 double reach_on(const Map& map, const Vec2& place, double bearing, double step, double most) {
   const auto covers = [&](double r) {
@@ -280,7 +280,8 @@ Boundary Area::floor_along(const Vec2& place, double bearing, double reach) cons
 void Area::put_water(const Vec2& place, double bearing, double reach, Environment& plane) const {
   if (!maps_.water) return;
   const WaterMap& water = *maps_.water;
-  // To the edge of the water's own map, and where it goes on a step further than is asked for.
+  // The last column stands at the edge of the water's own map, or at the first step that is no
+  // nearer than `reach`.
   const double step = water.spacing(place.x(), place.y());
   const double end = reach_on(water, place, bearing, spacing(place), reach + step);
   std::vector<double> at = {0.0};

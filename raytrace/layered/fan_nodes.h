@@ -22,12 +22,12 @@ struct CriticalSpeed {
 /// Nodes of the fan between two neighbours of them: sines at the slower one's depth, denser towards
 /// 0, where r(σ) bends within the distance to the next slower knot; geometric towards logarithmic
 /// ends. \param analytic  one law over the whole depth: few, wide intervals; a table has one from
-/// sample to sample   \param bend  that distance in σ, if it is less than nodes resolve anyway
+/// sample to sample   \param bend  that distance in σ (bend_within()); ∞: no more nodes
 void put_nodes(const CriticalSpeed& slow, const CriticalSpeed& fast, bool analytic,
                std::vector<double>& sigma, double bend = infinity);
 
-/// The distance in σ from a singular speed to the next slower of some others: the sine there of the
-/// ray that is horizontal at the slower one's depth. ∞ where there is none.
+/// The distance in σ from a singular speed to the next slower one among others: the sine, at the
+/// depth of `speed`, of the ray that is horizontal at the slower one's depth. ∞ if none is slower.
 [[nodiscard]] double bend_within(double speed, std::span<const double> others);
 
 }  // namespace asdic::detail

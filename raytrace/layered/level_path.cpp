@@ -11,16 +11,16 @@
 namespace asdic::detail {
 namespace {
 
-/// A ray that is nearly level all the way, to first order in its angle: its depth z obeys d²z/dr² =
-/// −c′/c, c′ linear in depth.
+/// A ray that is nearly level along its whole path, to first order in its angle. Its depth z obeys
+/// d²z/dr² = −c′/c, where c′ is linear in depth.
 struct FlatRay {
   double launch = 0.0, arrival = 0.0;  ///< dz/dr at its ends
   double q = 0.0;                      ///< dz/d(launch): sin(kr)/k, k² = c″/c [m]
-  double later = 0.0;                  ///< than along the level, of second order [s]
-  int caustics = 0;                    ///< zeros of q on the way
+  double later = 0.0;                  ///< delay beyond that of the level ray, to second order [s]
+  int caustics = 0;                    ///< zeros of q along the path
 };
 
-/// Whether a profile is its parabola about a depth, to a share of what that adds, at another depth.
+/// Whether a profile, at the depth `there`, is the parabola about `depth` to a share of its bend.
 bool is_parabola(const SoundSpeedProfile& water, double depth, double there, double share) {
   const SoundSpeed here = water.at(depth), other = water.at(there);
   const double away = there - depth, bend = 0.5 * here.d2c_dz2 * away * away;
@@ -30,7 +30,7 @@ bool is_parabola(const SoundSpeedProfile& water, double depth, double there, dou
 }
 
 /// The flat ray between two depths beside an extremum of c, or where c has no gradient; none where
-/// it is so steep that the search resolves it.
+/// it is steep enough for the search of r(σ) to resolve.
 std::optional<FlatRay> flat_ray(const SoundSpeedProfile& water, double source_depth,
                                 double receiver_depth, double range) {
   const SoundSpeed here = water.at(source_depth);
@@ -48,14 +48,14 @@ std::optional<FlatRay> flat_ray(const SoundSpeedProfile& water, double source_de
   ray.arrival = ray.launch * cosine - fall * ray.q;
   const double steepest = std::max(std::abs(ray.launch), std::abs(ray.arrival));
   if (!(steepest < (straight ? flattest_straight : flattest))) return std::nullopt;
-  // The extremum's depth under the source's, and the furthest that the ray goes from that.
+  // Depth of the extremum under the source's.
   const double axis = straight ? 0.0 : -fall / bend;
   ray.later =
       0.5 / here.c * ((apart - axis) * ray.arrival + axis * ray.launch - fall * axis * range);
-  // What the parabola leaves out is of the next order in the way from the axis, and all there is
-  // beside a focus, where q = 0.
+  // The error of the parabola is one order higher in the distance from the axis. Beside a focus,
+  // where q = 0, that order is all that spreads the rays, so there the parabola has to hold better.
   const double share = 0.01 * std::min(1.0, std::abs(ray.q) / std::min(range, 1.0 / k));
-  const double away = straight ? 0.0 : std::abs(axis) + steepest / k;
+  const double away = straight ? 0.0 : std::abs(axis) + steepest / k;  // most distance from it
   for (const double there : {receiver_depth, 0.5 * (source_depth + receiver_depth),
                              source_depth - away, source_depth + away})
     if (there != source_depth && !is_parabola(water, source_depth, there, share))

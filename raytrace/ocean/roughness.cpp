@@ -37,8 +37,8 @@ constexpr double finest_step = 0.02;
 /// Exponent of the spectrum's cut-off beyond which nothing is left.
 constexpr double gone = 40.0;
 
-/// ln of 4 sin θ ∫ ½α x⁻² e^{−β/(x κ)²} A(x) d(ln x), κ = kU²/g, A = mean_vertical: of a sea too
-/// short to scatter into the water, e⁻⁴⁶⁰ for instance, a number like any other.
+/// ln of 4 sin θ ∫ ½α x⁻² e^{−β/(x κ)²} A(x) d(ln x), κ = kU²/g, A = mean_vertical. The logarithm
+/// stays finite where the waves are too short to scatter sound and the integral itself underflows.
 template <class Vertical>
 double log_first_order(double sine, double scaled, double last, const Vertical& vertical,
                        int steps) {

@@ -19,11 +19,11 @@
 namespace asdic::detail {
 namespace {
 
-/// A source and a receiver closer than this in depth: the sums take them so far apart, no answer
-/// changes by more than rounding [m].
+/// Least distance in depth of source and receiver in the sums [m]. Ends that are closer are moved
+/// apart to it, which changes no result by more than rounding.
 constexpr double depth_offset = 1e-6;
 
-/// The receiver's depth that the sums take.
+/// Depth of the receiver in the sums [m]: in the water, at least `depth_offset` from the source's.
 double summed_depth(double source_depth, double receiver_depth, const Environment& ocean) {
   const double off = receiver_depth - source_depth;
   if (std::abs(off) >= depth_offset) return receiver_depth;

@@ -15,7 +15,7 @@ constexpr double margin = 64.0;
 
 double intensity(const Arrival& path) { return std::norm(path.amplitude) + path.scattered; }
 
-/// sin² of the steepest wave that the water turns, at the slowest depth.
+/// sin² of the angle, at the slowest depth, of the steepest wave that the water turns.
 double steepest_sine2(const Environment& ocean) noexcept {
   double slow = std::numeric_limits<double>::infinity(), fast = 0.0;
   const auto look = [&](double depth) {

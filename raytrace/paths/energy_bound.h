@@ -4,25 +4,26 @@
 
 namespace asdic::detail {
 
-/// Where a leg begins and ends, and its frequency.
+/// Ends of a leg, its frequency, and what kind of ocean it is in.
 struct LegEnds {
   double source_depth, receiver_depth, range;  ///< [m]
   double frequency;                            ///< [Hz]
   bool layered = true;                         ///< is_layered()
-  bool in_volume = false;                      ///< focused across vertical planes, too
+  bool in_volume = false;                      ///< rays may be focused across vertical planes, too
 };
 
-/// Most that the paths of one leg may bring together, Σ(|A|² + scattered) of a unit source at 1 m
-/// [1/m² × 1 m²]: 64 times
+/// Upper bound of the intensity Σ(|A|² + scattered) of all paths of one leg, relative to 1 m from
+/// the source:
 ///
-///   1/d² + (8/π)·k·s²/d + π/(d·H)
+///   64·(1/d² + (8/π)·k·s²/d + π/(d·H))
 ///
-/// spherical spreading over the distance d, a perfect focus of all waves that the water turns, s
-/// the sine of the steepest of them, and sound kept between the boundaries, H apart. Where anything
-/// varies with range s is 1 and H half a wavelength. docs/theory/energy-bound.md
+/// The terms are spherical spreading over the distance d [m], a perfect focus of all waves that the
+/// water turns, s being the sine of the steepest of them, and sound kept between boundaries that
+/// are H apart [m]. Where anything varies with range, s is 1 and H half a wavelength.
+/// Source: docs/theory/energy-bound.md, eq. (2)
 [[nodiscard]] double most_intensity(const Environment& ocean, const LegEnds& ends) noexcept;
 
-/// Returns where paths bring no more than energy lets them.
+/// Checks that the paths of a leg are together no louder than most_intensity().
 /// \throws RunError  naming the loudest path, the leg, the level and the bound
 void ensure_bounded(const Arrivals& paths, const Environment& ocean, const LegEnds& ends);
 

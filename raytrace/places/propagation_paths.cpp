@@ -208,7 +208,7 @@ Arrivals PropagationPaths::search(const Vec3& from, const Vec3& to, double frequ
 
 Arrivals PropagationPaths::bounded(Arrivals found, const Vec3& from, const Vec3& to,
                                    double frequency, const PathLimits& limits) const {
-  // Rays alone have no bound at a caustic: nobody receives those where waves mend them.
+  // Rays alone have no bound at a caustic. Where diffraction is on, waves replace them there.
   if (layered_ && !limits.diffraction) return found;
   ensure_bounded(found, along_.environment(),
                  {.source_depth = from.z(),

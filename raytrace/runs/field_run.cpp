@@ -260,8 +260,8 @@ FanField field_of_fan(const PropagationCase& run_case, const RayTracer& tracer, 
 
 namespace {
 
-/// Images where they are wanted, and where waves, if those are let, are no better. \param exact
-/// only where they are the wave equation's field
+/// The field as a sum of images; none where the case's solver asks for waves, or images do not
+/// apply. \param exact  with the automatic solver only if images are the wave equation's field
 std::optional<ConvergedField> summed_images(const PropagationCase& run_case, double source_depth,
                                             const Progress& progress, bool exact) {
   if (run_case.solver == FieldSolver::waves) return std::nullopt;

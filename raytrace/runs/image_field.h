@@ -27,8 +27,8 @@ struct RaySum {
 /// anything. \param sums  [rows × ranges]
 [[nodiscard]] ConvergedField field_of_sums(const std::vector<RaySum>& sums, bool coherent);
 
-/// Whether smooth walls reflect all angles alike, as vacuum, a rigid wall or the same water do:
-/// then images are the wave equation's field, and not only that of rays.
+/// Whether both walls are smooth and reflect all angles alike, as do vacuum, a rigid wall and the
+/// same water. The sum of images is then the wave equation's field and not only that of rays.
 [[nodiscard]] bool mirrors_exactly(const PropagationCase& run_case) noexcept;
 
 /// The field of a source in isovelocity water between flat boundaries, as a sum over its images: of
@@ -39,8 +39,8 @@ struct RaySum {
 /// Images come in shells of four, k bounces off each wall and one more or less. They are added
 /// until the largest |R_s R_b|^k of steeper paths bounds what is left to 10⁻⁵ of the root of the
 /// summed intensity. A guide that loses nothing has no end of them: their tail is extrapolated
-/// (coherent: Levin's u-transform; intensities: a power series in 1/k). Each is reflected as a
-/// plane wave is: the note says so. docs/theory/fields.md, "Images" \throws Interrupted
+/// (coherent: Levin's u-transform; intensities: a power series in 1/k). Each image is reflected as
+/// a plane wave is, which the note states. docs/theory/fields.md, "Images" \throws Interrupted
 [[nodiscard]] std::optional<ConvergedField> image_field(const PropagationCase& run_case,
                                                         double source_depth,
                                                         const Progress& progress = {});

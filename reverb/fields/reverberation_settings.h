@@ -24,7 +24,7 @@ struct ScattererField {
 struct VolumeLayer {
   double top = 0.0, bottom = 100.0;  ///< depths [m]
   double strength_db = -80.0;        ///< S_v [dB re 1 m⁻¹]
-  std::optional<int> sheets;         ///< that stand for it; by default sheets_of() says
+  std::optional<int> sheets;         ///< number of sheets; by default sheets_of() chooses
   ScattererField field;
 
   void describe(Fields& setting);

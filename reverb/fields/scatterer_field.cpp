@@ -118,7 +118,7 @@ double texture_amplitude(const ScattererStatistics& statistics, const Vec2& plac
     return static_cast<std::uint64_t>(
         static_cast<std::int64_t>(std::floor(x / statistics.correlation_length + unit(word))));
   };
-  // Where the squares' corners lie is drawn: a sonar at [0, 0] is not at one of them every time.
+  // The squares' corners are drawn, so that a sonar at [0, 0] is not at a corner with every seed.
   const auto origin = RandomStream(seed, Draw::scatterer_texture, 1, boundary).block(0);
   RandomStream draw(
       seed, Draw::scatterer_texture, 0,

@@ -20,16 +20,16 @@ struct ScatteringPart {
   double thickness = 0.0;               ///< of a sheet [m]
 };
 
-/// Where sound leaves and is received, near which layers are cut into thinner sheets.
+/// Depths at which sound leaves and is received. Layers are cut into thinner sheets near them.
 struct LayerEnds {
-  std::vector<double> depths = {};  ///< none: far from all layers [m]
-  double finest = 1.0;              ///< thickness of a sheet, at least [m]
+  std::vector<double> depths = {};  ///< [m]; none: sheets of 50 m
+  double finest = 1.0;              ///< least thickness of a sheet [m]
 };
 
-/// Thicknesses of the sheets of a layer from its top down [m]. A sheet has the amplitude of its
-/// middle. It is no thicker than 50 m, nor than 0.115 of its distance from the nearest end, where
-/// spreading over its half makes 0.5 dB of a narrow beam (20·lg 1.0575); the one at the edge that
-/// faces the ends, which is received alone for a while, is half of that (40·lg 1.029).
+/// Thicknesses of the sheets of a layer from its top down [m]. All of a sheet has the amplitude of
+/// its middle. So it is at most 50 m thick and at most 0.115 of its distance from the nearest end:
+/// over half of that, spreading changes a narrow beam by 0.5 dB (20·lg 1.0575). The sheet at the
+/// edge that faces the ends is received alone for a while and is half as thick (40·lg 1.029).
 [[nodiscard]] std::vector<double> sheets_of(const VolumeLayer& layer, const LayerEnds& ends);
 
 /// All that scatters. \param sound_speed  at the surface [m/s]   \param winds  kinds that there are

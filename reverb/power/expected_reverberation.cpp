@@ -58,13 +58,13 @@ std::array<float, 3> phases_of(const PathPair& pair, const GroundPiece& piece,
           static_cast<float>(phases.through * (pair.out_ends->down + pair.back_ends->down))};
 }
 
-/// How far its delays differ over it [s].
+/// Extent of a pair's delay over a piece of ground and its depth [s].
 float extent_of(const PathPair& pair, const GroundPiece& piece) noexcept {
   return static_cast<float>(std::abs(steepness(pair, piece.outward)) * piece.length +
                             std::abs(pair.out_ends->down + pair.back_ends->down) * piece.thickness);
 }
 
-/// exp(−½|Δ|²) of two sounds' phases over their piece; 0 where that is nothing.
+/// exp(−½|Δ|²), Δ the difference of two sounds' phases over their piece; 0 where it is below e⁻⁹.
 float in_phase(const std::array<float, 3>& one, const std::array<float, 3>& other) noexcept {
   constexpr float nothing = 18.0F;  // e⁻⁹
   float phases = 0.0F;
@@ -373,7 +373,7 @@ double ExpectedReverberation::power(const std::function<std::complex<double>(dou
 
 namespace {
 
-/// A sound of a place, the carrier's phase at its delay in its pressure.
+/// A sound received from a place. Its pressure includes the carrier's phase at its delay.
 struct PlacedSound {
   std::complex<double> pressure;
   double delay, extent;
@@ -381,13 +381,13 @@ struct PlacedSound {
   bool by_itself;
 };
 
-/// Steps of time into which energy is put.
+/// Energy received in even steps of time.
 struct EnergySteps {
   double first, step;
   std::vector<double> energy;
 
-  /// Energy that comes evenly over the pulse's duration, evenly over the extent of a delay: a
-  /// trapezoid of time.
+  /// Adds an energy that arrives as a trapezoid of time: evenly over the pulse's duration, from a
+  /// place whose delay is spread evenly over an extent.
   void add(double energy_of, double delay, double extent, double duration) noexcept {
     const double lasts = std::max(extent, 1e-3 * duration);
     const double begin = delay - 0.5 * lasts;

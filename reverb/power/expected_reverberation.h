@@ -27,7 +27,7 @@ struct ExpectedReverberation {
     std::complex<double> amplitude = 0.0;  // of the area that the place stands for
     /// Standard deviation of its phase over that area: outward, beside that and in depth [rad].
     std::array<float, 3> phases{};
-    float extent = 0.0F;  ///< of its delay over that area and depth, about `delay` [s]
+    float extent = 0.0F;  ///< of the delay over that area and depth, centred on `delay` [s]
   };
   /// Rings or sectors begin…end of a field.
   struct Block {
@@ -62,16 +62,17 @@ struct ExpectedReverberation {
   [[nodiscard]] double power(const std::function<std::complex<double>(double)>& sent,
                              double duration, double t) const;
 
-  /// The pulse, as a mean over time asks for it.
+  /// Properties of the pulse that mean_power() needs.
   struct SentPulse {
     const PulseCoherence& coherence;
     double duration = 0.0;   ///< [s]
     double energy = 0.0;     ///< ∫|s|²dt [s]
     double frequency = 0.0;  ///< centre [Hz]
   };
-  /// The same in steps of time no shorter than the pulse: the mean over each. Every place sends
-  /// evenly over the extent of its delay. \param first  beginning of the first step [s]
-  /// \param step  [s]   \return [count]
+  /// power() as the mean over each of `count` steps of time. The pulse's energy counts as spread
+  /// evenly over its duration, and every place sends evenly over the extent of its delay.
+  /// \param first  beginning of the first step, since the ping [s]   \param step  [s]
+  /// \return [count]
   [[nodiscard]] std::vector<double> mean_power(const SentPulse& pulse, double first, double step,
                                                std::size_t count) const;
 

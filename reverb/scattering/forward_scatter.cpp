@@ -91,10 +91,10 @@ Kink waves(const RoughBounce& at, int count, Sea sea, RandomStream& draws) {
   return kink;
 }
 
-/// A place on the boundary that joins the ends of a path by straight ways. The ends lie as far from
-/// the boundary and apart as straight ways by the mirror ask for.
+/// A place on the boundary, joined to the ends of a path by straight lines. The ends lie where
+/// straight lines by the mirrored point would be as long as the path.
 struct Facet {
-  double way_in, way_out;    ///< r₁ to it, r₂ from it [m]
+  double way_in, way_out;    ///< distances r₁ to it and r₂ from it [m]
   double sine_in, sine_out;  ///< of the grazing angles θ₁, θ₂
   double cosine_in, cosine_out;
 };
@@ -104,8 +104,8 @@ class Facets {
   Facets(const RoughBounce& at, double length)
       : at_(at), before_(at.along), after_(length - at.along), length_(length) {}
 
-  /// Where one wave's K along the way is k(cos θ₂ − cos θ₁). Beyond places behind the ends that are
-  /// not worth following: there.
+  /// Facet at which K = k(cos θ₂ − cos θ₁) for one wave of the sea with K along the path [rad/m].
+  /// It lies no further behind the ends than lowest() and highest().
   [[nodiscard]] Facet by_wave(double wavenumber) const noexcept {
     const double wanted = -wavenumber / at_.k;  // cos θ₁ − cos θ₂, which grows with the place
     double low = lowest(), high = highest(), y = 0.0;
@@ -125,8 +125,8 @@ class Facets {
     return there;
   }
 
-  /// Where a slope m mirrors: θ₂ − θ₁ = 2 atan m. With y the place beyond the mirrored path's, the
-  /// tangent of θ₂ − θ₁ is L sin θ y/(s(L − s) + (L − 2s) cos θ y − y²), a quadratic for y.
+  /// Facet at which a slope m mirrors: θ₂ − θ₁ = 2 atan m. With y the distance beyond the mirrored
+  /// path's point, tan(θ₂ − θ₁) = L sin θ y/(s(L − s) + (L − 2s) cos θ y − y²), a quadratic for y.
   [[nodiscard]] Facet by_slope(double slope) const noexcept {
     const double ways = before_ * after_,
                  b = (1.0 - slope * slope) * length_ * at_.sine -
@@ -136,24 +136,24 @@ class Facets {
     return facet(std::clamp(y, lowest(), highest()));
   }
 
-  /// Intensity per K by way of it over that at the mirrored path: first-order perturbation's
-  /// (sin θ₁ sin θ₂)² over both ways and over dK/dx = k(sin²θ₁/r₁ + sin²θ₂/r₂). It is most at the
-  /// mirrored path, 1.
+  /// Intensity per K through a facet over that at the mirrored path, where it is largest:
+  /// first-order perturbation's (sin θ₁ sin θ₂)² over both distances and over
+  /// dK/dx = k(sin²θ₁/r₁ + sin²θ₂/r₂).
   [[nodiscard]] double weight_of_wave(const Facet& there) const noexcept {
     return length_ / (at_.sine * at_.sine) /
            (there.way_in / (there.sine_in * there.sine_in) +
             there.way_out / (there.sine_out * there.sine_out));
   }
 
-  /// Intensity per slope over that at the mirrored path: Kirchhoff's
-  /// (1 − cos(θ₁ + θ₂))²/(sin θ₁ + sin θ₂)³ over both ways and over d slope/dx.
+  /// Intensity per slope through a facet over that at the mirrored path: Kirchhoff's
+  /// (1 − cos(θ₁ + θ₂))²/(sin θ₁ + sin θ₂)³ over both distances and d slope/dx.
   [[nodiscard]] double weight_of_slope(const Facet& f) const noexcept {
     const double kink = f.cosine_in * f.cosine_out + f.sine_in * f.sine_out;  // cos(θ₂ − θ₁)
     return length_ * (f.sine_in + f.sine_out) / (1.0 + kink) /
            (f.sine_in * f.way_out + f.sine_out * f.way_in);
   }
 
-  /// The most that weight_of_slope() is, anywhere.
+  /// Bound of weight_of_slope(): the largest over many slopes, and 10 % more.
   [[nodiscard]] double strongest_slope() const noexcept {
     double most = 1.0;
     for (int i = -30; i <= 30; ++i) most = std::max(most, weight_of_slope(by_slope(0.05 * i)));
@@ -161,7 +161,7 @@ class Facets {
   }
 
  private:
-  /// \param y  place along the way, after the mirrored path's [m]
+  /// \param y  distance along the boundary beyond the mirrored path's point [m]
   [[nodiscard]] Facet facet(double y) const noexcept {
     const double x1 = before_ * at_.cosine + y, x2 = after_ * at_.cosine - y,
                  d1 = before_ * at_.sine, d2 = after_ * at_.sine;
@@ -173,7 +173,7 @@ class Facets {
             .cosine_in = x1 / r1,
             .cosine_out = x2 / r2};
   }
-  // Behind the ends, as far as it is worth
+  // Limits of y, some depths of the ends behind them: what comes from beyond is negligible.
   [[nodiscard]] double lowest() const noexcept { return -before_ * (at_.cosine + 3.0 * at_.sine); }
   [[nodiscard]] double highest() const noexcept { return after_ * (at_.cosine + 3.0 * at_.sine); }
 
@@ -182,7 +182,7 @@ class Facets {
 };
 
 /// A kink that joins the ends of the path: by one wave of the sea, or by the slope of many.
-/// \param strongest  the most that a slope weighs; 0: not known
+/// \param strongest  Facets::strongest_slope(), found at the first call; 0: not known yet
 Kink kink_at(const RoughBounce& at, double length, double& strongest, Sea sea,
              RandomStream& draws) {
   const Facets facets(at, length);
@@ -210,12 +210,12 @@ Kink kink_at(const RoughBounce& at, double length, double& strongest, Sea sea,
   return {};
 }
 
-/// What the kinks of one leg add to its length: each for itself, and every two of them
-/// δ_i δ_j s_<(L − s_>)/L, both ways of turning [m].
+/// Length that the kinks of one leg add to it [m]: of each by itself, and δ_i δ_j s_<(L − s_>)/L of
+/// every two, for turns down and aside.
 class Excess {
  public:
   explicit Excess(double length) : length_(length) {}
-  /// \param along  its place, not before that of the kink before it [m]
+  /// \param along  place of the kink, not before that of the last one added [m]
   void add(const Kink& kink, double along) noexcept {
     sum_ += kink.excess + (kink.down * down_ + kink.aside * aside_) * (length_ - along) / length_;
     down_ += kink.down * along;
@@ -267,7 +267,7 @@ RoughPath rough_path(const Environment& ocean, const Arrival& path, double frequ
 std::vector<ScatteredPart> forward_scatter(const Environment& ocean,
                                            std::span<const ScatteredLeg> legs, double frequency,
                                            int parts, std::uint64_t seed, std::uint64_t entity) {
-  // Energy that is left after some legs, and of the mean field
+  // Share of the energy, in all or of the mean field, that is left after some legs.
   const auto left = [](std::span<const ScatteredLeg> some, double RoughBounce::*of) {
     double product = 1.0;
     for (const ScatteredLeg& leg : some)

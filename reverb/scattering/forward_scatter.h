@@ -10,39 +10,39 @@
 
 namespace asdic::detail {
 
-/// A bounce of a path off a rough boundary, as straight ways have it that are as long as the path.
+/// A bounce of a path off a rough boundary, as if straight lines of the path's length led to it.
 struct RoughBounce {
-  double coherent = 1.0;               ///< share of the energy that the mean field keeps
-  double energy = 1.0;                 ///< that is left of it in all
-  double all_on = 1.0, mean_on = 1.0;  ///< products of both from this bounce on
+  double coherent = 1.0;               ///< share of the energy that stays in the mean field
+  double energy = 1.0;                 ///< share of the energy that is left in all
+  double all_on = 1.0, mean_on = 1.0;  ///< products of `energy` and `coherent` from here on
   double mean_waves = 0.0;             ///< G²
   double scale = 0.0;                  ///< K of the spectrum: K² = scale²/(−ln u) [rad/m]
   double k = 0.0;                      ///< wavenumber of the sound [rad/m]
   double grazing = 0.0, sine = 0.0, cosine = 1.0;
-  double along = 0.0;  ///< s, of its path [m]
-  double share = 0.0;  ///< of the way and of the time to it
-  double range = 0.0;  ///< horizontal, to it [m]
-  bool moves = false;
+  double along = 0.0;  ///< distance s along the path [m]
+  double share = 0.0;  ///< share of the path's length and delay up to it
+  double range = 0.0;  ///< horizontal distance to it [m]
+  bool moves = false;  ///< off the surface, whose waves run
 };
 
-/// A change of direction at a bounce, and what the sea's waves that made it do to the phase.
+/// Change of direction at a bounce, with the waves of the sea that make it and turn the phase.
 struct Kink {
   double down = 0.0, aside = 0.0;        ///< [rad]
   double out = 0.0;                      ///< θ₂ less the mirrored path's grazing angle [rad]
-  double excess = 0.0;                   ///< of the way's length [m]
-  double along_way = 0.0, across = 0.0;  ///< wavenumber along the way and to its right [rad/m]
-  double omega = 0.0;                    ///< [rad/s]
+  double excess = 0.0;                   ///< added to the path's length [m]
+  double along_way = 0.0, across = 0.0;  ///< wavenumber along the path and to its right [rad/m]
+  double omega = 0.0;                    ///< frequency of the waves [rad/s]
 };
 
-/// A path's bounces off rough boundaries and the kinks that they make of it, part by part. They are
-/// drawn once for all pairs of paths of which it is one.
+/// Bounces of a path off rough boundaries, with the kinks that they give it in each part. All pairs
+/// of paths to which the path belongs share them.
 struct RoughPath {
   double length = 0.0, delay = 0.0;  ///< of the path [m], [s]
-  std::vector<RoughBounce> bounces;  ///< by their places along it
+  std::vector<RoughBounce> bounces;  ///< in their order along it
   std::vector<Kink> kinks;           ///< [parts × bounces]
 };
 
-/// Draws are keyed by the seed and `entity`; they do not depend on the ping.
+/// Draws the kinks of a path, keyed by the seed and `entity`; they do not depend on the ping.
 /// \param entity  which path of what, the same from ping to ping   \param frequency  [Hz]
 [[nodiscard]] RoughPath rough_path(const Environment& ocean, const Arrival& path, double frequency,
                                    int parts, std::uint64_t seed, std::uint64_t entity,
@@ -50,7 +50,7 @@ struct RoughPath {
 
 /// One way of the sound between two ends, along one path.
 struct ScatteredLeg {
-  const RoughPath* path = nullptr;  ///< with as many parts as are asked for
+  const RoughPath* path = nullptr;  ///< drawn with at least as many parts
   Vec2 from = Vec2::Zero();         ///< where it begins, on the map [m]
   double bearing = 0.0;             ///< of travel [rad]
   double start = 0.0;               ///< when, since the start of the scenario [s]
@@ -78,9 +78,9 @@ struct ScatteredPart {
 /// part has a complex Gaussian weight and the phase Ωt − K·x of its waves at the places of the
 /// bounces: so it changes from ping to ping, from place to place. docs/theory/surface-scattering.md
 ///
-/// Which bounces scatter, and the weights, are drawn by the seed and `entity`, the same from ping
-/// to ping; the kinks are those of the paths. \param frequency  [Hz] \return none where nothing is
-/// rough
+/// The seed and `entity` key which bounces scatter, and the weights, so that both are the same from
+/// ping to ping. The kinks are those of the paths (rough_path()).
+/// \param frequency  [Hz]   \return none where nothing is rough
 [[nodiscard]] std::vector<ScatteredPart> forward_scatter(const Environment& ocean,
                                                          std::span<const ScatteredLeg> legs,
                                                          double frequency, int parts,

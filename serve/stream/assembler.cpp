@@ -49,7 +49,7 @@ void Assembler::join(const Message& descriptor, std::int64_t block, const Sizes&
   over_ = false;
 }
 
-/// Sequence numbers are looked at from this descriptor on.
+/// Counts packets from this descriptor's on. Those that are missing before it count as lost.
 void Assembler::begin_at(const Message& descriptor) {
   counts_.lost += static_cast<std::uint64_t>(
       std::max<std::int64_t>(0, ahead(descriptor.sequence, latest_) - 1));

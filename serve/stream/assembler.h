@@ -17,8 +17,8 @@ namespace asdic::detail::serve {
 ///
 /// Blocks come out in their order. One that lacks a piece is waited for until `window` blocks later
 /// something has arrived; then it is lost, whole. Before join() no block is taken: what its bytes
-/// mean is not known yet. From then on it is bound to the stream's number and sender: packets of
-/// others are left aside, all but their descriptors, which may be joined if may_join() says so.
+/// mean is not known yet. Afterwards only packets with the stream's number and sender are taken. Of
+/// other streams the descriptors alone are read, and may be joined if may_join() allows it.
 class Assembler {
  public:
   struct Message {
@@ -26,9 +26,9 @@ class Assembler {
     std::int64_t block = 0;      ///< its number; of a descriptor, of the next block
     std::uint32_t sequence = 0;  ///< of its first packet
     std::uint32_t packets = 1;
-    std::uint64_t stream = 0;  ///< number of its stream
+    std::uint64_t stream = 0;  ///< number of the stream
     std::string sender = {};
-    double time = 0.0;  ///< when it was whole [s]
+    double time = 0.0;  ///< at which its last packet came [s]
     std::string content = {};
     std::uint64_t lost = 0;  ///< blocks directly before it
   };
@@ -37,37 +37,38 @@ class Assembler {
     std::uint64_t lost = 0;         ///< packets, by the gaps in their numbers
     std::uint64_t reordered = 0;    ///< came after a later one
     std::uint64_t duplicates = 0;   ///< came again
-    std::uint64_t foreign = 0;      ///< no packets, or none that the stream can have, or too late
-    std::uint64_t others = 0;       ///< of other senders, while the stream goes on
+    std::uint64_t foreign = 0;      ///< no packets of ours, impossible in the stream, or too late
+    std::uint64_t others = 0;       ///< packets of other senders while the stream goes on
     std::uint64_t blocks = 0;       ///< given
     std::uint64_t lost_blocks = 0;  ///< not whole
   };
   using Give = std::function<void(Message&&)>;
   static constexpr std::int64_t window = 4;  ///< blocks
 
-  static constexpr double silence = 5.0;  ///< after which another sender is joined [s]
+  static constexpr double silence = 5.0;  ///< before another sender's stream is joined [s]
 
   /// Sizes of a stream's blocks [bytes].
   struct Sizes {
-    std::size_t longest = 0;  ///< of all blocks but a last one, which may be shorter
-    std::size_t sample = 1;   ///< of one sample of all phones: blocks have whole ones
+    std::size_t longest = 0;  ///< size of each block but the last, which may be shorter
+    std::size_t sample = 1;   ///< size of one sample of all phones, of which a block has whole ones
   };
-  /// A stream begins, or is joined. \param descriptor  that says so: what was sent before it does
-  /// not belong to it   \param block  the first one
+  /// Begins or joins a stream. \param descriptor  of the stream; packets sent before it do not
+  /// belong to the stream   \param block  number of the first block
   void join(const Message& descriptor, std::int64_t block, const Sizes& sizes);
   [[nodiscard]] bool joined() const noexcept { return sizes_.longest > 0; }
-  /// Whether a descriptor is of the stream that is joined.
+  /// Whether a descriptor belongs to the stream that has been joined.
   [[nodiscard]] bool is_own(const Message& descriptor) const noexcept {
     return joined() && descriptor.stream == stream_ && descriptor.sender == sender_;
   }
-  /// Whether another stream may take its place: the sender's next one; another's when this one has
-  /// ended, or nothing of it came for some time.
+  /// Whether the stream of a descriptor may take the place of the joined one. The same sender's
+  /// next stream may at once; another sender's may after the joined one has ended or been silent.
   [[nodiscard]] bool may_join(const Message& descriptor) const noexcept;
 
-  /// \param give  is told what is whole by it, a descriptor at once; it may call join() or go_on()
+  /// \param give  called with each message that is complete, with a descriptor at once; it may call
+  /// join() or go_on()
   void take(const Datagram& datagram, const Give& give);
-  /// The stream's own descriptor has come. After a gap too long to count, what lies before `block`
-  /// is lost.
+  /// Takes note of a descriptor of the joined stream. After a gap that is too long to count, the
+  /// blocks before `block` are lost.
   void go_on(const Message& descriptor, std::int64_t block, const Give& give);
   /// No more comes: what is whole is given, the rest is lost. \param next  number of the block that
   /// would follow: those before it that did not come are lost, too

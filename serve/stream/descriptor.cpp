@@ -15,7 +15,7 @@ namespace {
 using OrderedJson = nlohmann::ordered_json;
 
 constexpr double between_descriptors = 1.0;  // of the stream [s]
-/// A stream's number as text: 16 digits.
+/// A stream's number as 16 hexadecimal digits.
 std::string text_of(std::uint64_t stream) {
   std::string text(16, '0');
   for (auto digit = text.rbegin(); digit != text.rend(); ++digit, stream >>= 4U)

@@ -29,11 +29,11 @@ struct Descriptor {
   bool ended = false;           ///< no block comes any more
 
   [[nodiscard]] std::size_t components() const noexcept { return carrier ? 2 : 1; }
-  /// Of one sample of all phones [bytes].
+  /// Size of one sample of all phones [bytes].
   [[nodiscard]] std::size_t sample_bytes() const noexcept {
     return channels * components() * sizeof(float);
   }
-  /// Of a block of `block_samples` [bytes].
+  /// Size of a block of `block_samples` [bytes].
   [[nodiscard]] std::size_t block_bytes() const noexcept { return block_samples * sample_bytes(); }
 };
 

@@ -11,11 +11,11 @@ namespace asdic::detail::serve {
 /// What a packet of a stream is for (docs/formats/stream.md).
 enum class PacketKind : std::uint8_t { descriptor = 0, block = 1 };
 
-/// What came by UDP.
+/// A datagram received by UDP.
 struct Datagram {
   std::string_view bytes;
   std::string_view sender = {};  ///< "HOST:PORT"
-  double time = 0.0;             ///< when, by a clock that never goes back [s]
+  double time = 0.0;             ///< at which it came, by a clock that never goes back [s]
 };
 
 /// A packet: 24 bytes of header, and a piece of a message. A message is a descriptor or a block;

@@ -11,9 +11,9 @@
 
 namespace asdic::detail::serve {
 
-/// Blocks of a stream out of its packets (docs/formats/stream.md). It is bound to the stream that
-/// it joins first. The server's next one is taken where it begins, another server's when this one
-/// has ended, or ceased.
+/// Blocks of a stream out of its packets (docs/formats/stream.md). The receiver is bound to the
+/// stream that it joins first. It takes the same server's next stream when that begins, and another
+/// server's when the joined one has ended or been silent for Assembler::silence.
 class StreamReceiver {
  public:
   struct Block {

@@ -38,7 +38,7 @@ class UdpReceiver {
   UdpReceiver(const UdpReceiver&) = delete;
   UdpReceiver& operator=(const UdpReceiver&) = delete;
 
-  /// The next packet, until the next call; no bytes if none comes so long. \param seconds  to wait
+  /// The next packet, valid until the next call; no bytes if none comes. \param seconds  to wait
   [[nodiscard]] Datagram next(double seconds);
 
  private:

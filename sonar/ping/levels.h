@@ -21,7 +21,7 @@ class LevelMeter {
 
   /// \param peak_pressure  of the source at 1 m [Pa], the unit of the baseband
   void add_echo(const Baseband& received, double peak_pressure);
-  /// \param share  of all phones that receive it
+  /// \param share  of all phones, that belong to the array which receives it
   void add_reverberation(const PingReverberation& sea, double peak_pressure, double share);
   void add_noise(double variance);  ///< of every sample [Pa²]
 
@@ -32,7 +32,7 @@ class LevelMeter {
   LevelSeries series_;
 };
 
-/// What summarise() asks for.
+/// Functions that summarise() calls for each target.
 struct SummaryParts {
   /// Largest envelope of echoes as they add at an array, over the pulse's peak at 1 m.
   std::function<double(int array, std::span<const EchoPath> echoes)> peak;
@@ -46,8 +46,8 @@ struct SummaryParts {
                                                    const Scenario& scenario, const Pulse& pulse,
                                                    const SummaryParts& parts);
 
-/// Which echo of a ping its record does not hold whole, as a warning; empty: none. \param pulse
-/// that was sent
+/// Warning of a target whose loudest echo the ping's record does not hold completely; empty: none.
+/// \param pulse  that was sent
 [[nodiscard]] std::string echo_beside_record(const PingRecord& record, const Scenario& scenario,
                                              const Pulse& pulse);
 

@@ -69,7 +69,7 @@ MemoryNeed two_step_need(const ManyEchoes& many, const Baseband& received) {
               "max_bottom_bounces"};
 }
 
-/// Of echoes that are received across the band: the sum so far.
+/// Memory of the sum of echoes that are received across the band part by part.
 MemoryNeed band_need(const Synthesizer& synthesizer, std::size_t channels) {
   return {.where = "propagation.band",
           .what = "echoes across the band on " + std::to_string(channels) + " phones",

@@ -149,15 +149,15 @@ class PingSimulator {
     const Pulse& pulse;
     BeamPattern pattern;
   };
-  /// Echoes and direct blasts, also put into the record with their legs.
+  /// Returns the echoes and direct blasts, and puts them into the record with their legs.
   std::vector<EchoPath> sparse_returns(const EchoContext& context, const Emission& emission,
                                        PingRecord& record) const;
-  /// The summary's peak of a target's echoes, as summarise() asks for it.
+  /// Largest envelope of a target's echoes as they add (SummaryParts::peak).
   [[nodiscard]] double peak_of(const Emission& emission, int array,
                                std::span<const EchoPath> echoes, PingRecord& record) const;
   [[nodiscard]] Emission emit(const Transmission& sent, int ping) const;
-  /// Parts of the band by which echoes of many paths are received; empty: the centre stands for it.
-  /// \param loudest  of these paths   \param last  time at which one of them is received [s]
+  /// Parts of the pulse's band for echoes of many paths; empty: the centre stands for the band.
+  /// \param loudest  the loudest of these echoes   \param last  time of the last one [s]
   [[nodiscard]] std::vector<BandPart> band_of(const EchoContext& context, const Emission& emission,
                                               const PingRecord& record,
                                               std::span<const EchoPath> loudest, double last) const;

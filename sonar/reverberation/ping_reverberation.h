@@ -64,8 +64,9 @@ class PingReverberation final : public ReturnSource {
   /// |Σ_pairs A·D·s(t − τ)|², the mean over weights. −∞ where there is none.
   [[nodiscard]] double expected_db(double t) const;
 
-  /// The same of power, as a mean over steps of time. \param first  beginning of the first step [s]
-  /// \return [count] peak envelope's square over that of the source at 1 m
+  /// Expected power as the mean over steps of time: the peak envelope's square over that of the
+  /// source at 1 m. \param first  beginning of the first step, since the ping [s]
+  /// \param step  [s]   \return [count]
   [[nodiscard]] std::vector<double> mean_power(double first, double step, std::size_t count) const;
 
   /// \param most  rows   \param memory  of what is kept; null: none

@@ -122,8 +122,8 @@ double speed_at_surface(const Scenario& scenario, const PropagationPaths& paths)
 
 namespace {
 
-/// Depths of transmitters and arrays at a few of the pings. \param resolved  distance that the
-/// pulse tells apart [m]
+/// Depths of transmitters and arrays at a few of the pings, for the sheets of volume layers.
+/// \param resolved  distance that the pulse resolves [m]
 LayerEnds layer_ends(const Scenario& scenario, double resolved) {
   LayerEnds ends;
   if (scenario.reverberation.volume.empty()) return ends;

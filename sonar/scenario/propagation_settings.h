@@ -10,7 +10,7 @@ namespace asdic::detail {
 
 class Fields;
 
-/// Frequencies at which losses, patterns and the amplitudes of waves are taken.
+/// Frequencies at which losses, patterns and the amplitudes of waves are computed.
 enum class BandOfLosses : std::uint8_t {
   automatic,  ///< echoes and direct sound: as `wide` where that changes them, else as `narrow`
   narrow,     ///< the pulse's centre
@@ -29,8 +29,7 @@ struct PropagationSettings {
   std::optional<int> max_bottom_bounces = {};
   double max_launch_angle = 0.5 * pi;  ///< from the horizontal [rad]
   bool direct_blast = true;            ///< arrays on other platforms receive the ping on its way
-  bool fathometer =
-      false;  ///< those on the transmitter's own receive it mirrored by the boundaries
+  bool fathometer = false;  ///< arrays on the transmitter's platform receive it off the boundaries
   BandOfLosses band = BandOfLosses::automatic;
   bool diffraction = true;       ///< echoes and direct sound where no ray goes, in stratified water
   bool exact_per_phone = false;  ///< eigenrays to every phone, also where a plane wave is enough

@@ -67,9 +67,9 @@ BandLimitedPulse::BandLimitedPulse(const Pulse& pulse, double sample_rate,
 
 namespace {
 
-/// Of the pulse's frequencies f + ν those that a complex recording holds under every Doppler
-/// factor, |η(f + ν) − f_rec| ≤ rate/2: the full width in ν [Hz]. Two bins of the period are left
-/// for rounding the carrier and the band to bins.
+/// Full width in ν [Hz] of the frequencies f + ν of a pulse that a complex recording holds under
+/// every Doppler factor, |η(f + ν) − f_rec| ≤ rate/2. Two bins of the period are left for rounding
+/// the carrier and the band to bins.
 double recorded_width(const Pulse& sent, const Recording& record, double max_doppler) {
   if (!record.is_complex()) return infinity;
   const double f = sent.centre_frequency();

@@ -51,8 +51,8 @@ class BandLimitedPulse {
   double centre_frequency_ = 0.0, half_duration_ = 0.0, half_band_ = 0.0;
 };
 
-/// The pulse as a recording holds it under every Doppler factor, through a filter. \param
-/// max_doppler largest |η − 1|   \param filter  as BandLimitedPulse takes it
+/// The pulse through a filter, in the band that a recording holds under every Doppler factor.
+/// \param max_doppler  largest |η − 1|   \param filter  as BandLimitedPulse takes it
 [[nodiscard]] BandLimitedPulse recorded_pulse(const Pulse& sent, const Recording& record,
                                               double max_doppler,
                                               const std::function<double(double)>& filter = {});

@@ -46,8 +46,8 @@ void check(const Pulse& pulse, const Recording& recording, double max_doppler) {
     throw InputError({.where = "recording.samples", .got = "0", .expected = "at least 1"});
 }
 
-/// The pulse through every filter, and after several the pulse itself: what all of them share is
-/// worked out for it.
+/// The pulse through every filter. If there are several, the unfiltered pulse follows, for which
+/// everything that they share is computed.
 std::vector<BandLimitedPulse> responses(const Pulse& sent, const Recording& record,
                                         double max_doppler,
                                         std::vector<std::function<double(double)>> filters) {

@@ -429,7 +429,7 @@ std::string of_law(const char* where, const std::variant<Law...>& law, double lo
 
 namespace {
 
-/// About how long sound takes from one place straight to another [s].
+/// Approximate delay of sound along the straight line between two places [s].
 double straight_delay(const Scenario& scenario, const Vec3& from, const Vec3& to) {
   constexpr int parts = 16;
   double slowness = 0.0;

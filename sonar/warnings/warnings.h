@@ -44,11 +44,11 @@ namespace checks {
 [[nodiscard]] std::string wind_elsewhere(const Scenario& scenario);
 /// Places where an area's map, or the bounds that rays in three dimensions take of it, do not hold.
 [[nodiscard]] std::string far_from_the_origin(const Scenario& scenario);
-/// A target whose echo no array receives whole within its ping's record, by the straight way.
+/// A target whose echo along straight lines no array receives completely within its ping's record.
 [[nodiscard]] std::string echo_beside_record(const Scenario& scenario);
-/// Pings whose records overlap, none of which has what is received of the others.
+/// Pings whose records overlap. No record contains what is received of another ping.
 [[nodiscard]] std::string overlapping_records(const Scenario& scenario);
-/// A line of projectors that is steered so far that its beam is much wider than `beamwidth_deg`.
+/// A line transmitter that is steered so far that its beam is much wider than `beamwidth_deg`.
 [[nodiscard]] std::string steered_line(const Scenario& scenario);
 /// A scattering law of a rough boundary that hands out more energy than comes in.
 [[nodiscard]] std::string scattering_energy(const Scenario& scenario);

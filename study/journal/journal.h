@@ -45,7 +45,7 @@ class Journal {
 
   [[nodiscard]] const std::filesystem::path& path() const noexcept;
   [[nodiscard]] const std::string& identity() const noexcept;
-  /// Whether no other process can have it open: false where the file system knows no locks.
+  /// Whether other processes are kept from opening it; false where the file system has no locks.
   [[nodiscard]] bool alone() const noexcept;
   [[nodiscard]] const IndexSet& done() const noexcept;  ///< when it was opened, and since
   /// Rows that did not match their checksum when it was opened: thrown away, to be made again.

@@ -27,7 +27,7 @@ class Database {
   void check(int code) const;
   [[nodiscard]] sqlite3* get() const noexcept { return connection_; }
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
-  /// Whether others are kept out: false where the file system knows no locks.
+  /// Whether locks keep other processes out; false where the file system has none.
   [[nodiscard]] bool locks() const noexcept { return locks_; }
 
  private:

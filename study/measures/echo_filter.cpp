@@ -42,9 +42,9 @@ const EchoPath* strongest(const PingRecord& record, int array, int target, int c
   return best;
 }
 
-/// The cells of an echo: those in which the target's pairs of paths bring, as powers, a hundredth
-/// of what the loudest has or more. \param cell  [s]   \return cells after the strongest pair,
-/// rising; {0} where no path is
+/// The cells of an echo: those in which the powers of the target's pairs of paths add up to at
+/// least a hundredth of the loudest cell's. \param cell  length of a cell [s] \return numbers of
+/// cells after the strongest pair, rising; {0} if there is no path
 std::vector<std::ptrdiff_t> cells_of(const PingRecord& record, int array, int target, double cell) {
   constexpr double faintest = 0.01;
   const EchoPath* loudest = strongest(record, array, target, Return::all_channels);
@@ -66,13 +66,13 @@ std::vector<std::ptrdiff_t> cells_of(const PingRecord& record, int array, int ta
   return cells;
 }
 
-/// A cell of the matched filter's answers, 1/B [samples].
+/// Length of a cell, 1/B, the matched filter's resolution [samples].
 std::ptrdiff_t cell_samples(const Pulse& pulse, double sample_rate) {
   return static_cast<std::ptrdiff_t>(std::ceil(sample_rate / noise_bandwidth(pulse)));
 }
 
-/// u = −ln P of the highest of n independent cells, P the probability that without an echo one of
-/// them is as high. \param level  its own u
+/// u = −ln P of the highest of n independent cells, where P is the probability that without an echo
+/// at least one of them is as high. \param level  the highest cell's own u
 double level_among(double level, std::size_t n) {
   const double number = static_cast<double>(n);
   if (n == 1) return level;
@@ -283,19 +283,20 @@ class TargetFilter {
 
   [[nodiscard]] const MatchedFilterAt& filter() const noexcept { return filter_; }
 
-  /// A cell and those that it is compared with [samples after the echo].
+  /// A cell and the cells that it is compared with [samples after the echo].
   struct Place {
     std::ptrdiff_t at = 0;
     std::vector<std::ptrdiff_t> around{};
   };
-  /// Cells of which the highest answers for all.
+  /// Cells that are tested together by the highest of them.
   using Window = std::vector<Place>;
 
-  /// All cells of the echo that the record tells of; none: it is not known.
+  /// The cells of the echo that can be tested within the record; none: the answer is not known.
   [[nodiscard]] Window echo() const {
     return window(0, [](std::ptrdiff_t) { return true; });
   }
-  /// As many at the nearest time without an echo, of two the earlier, as are free there.
+  /// The same cells moved to the nearest time without an echo, those that are free there. Of two
+  /// equally near times the earlier one is taken.
   [[nodiscard]] Window without_echo() const {
     const auto step = static_cast<std::ptrdiff_t>(std::ceil(duration_ * whole_.sample_rate));
     const auto most = static_cast<std::ptrdiff_t>(whole_.samples) / step + 1;
@@ -306,7 +307,7 @@ class TargetFilter {
           return found;
     return {};
   }
-  /// Why the echo's cells are not known; "": they are.
+  /// Reason why no cell of the echo can be tested; "" if one can.
   [[nodiscard]] std::string why_not_known() const {
     if (!echo().empty()) return "";
     const SampleRange record{.first = 0, .count = whole_.samples};
@@ -380,7 +381,7 @@ class TargetFilter {
   }
 
  private:
-  /// \param of  which cells
+  /// The echo's cells moved by `moved` samples. \param of  which of them to take
   template <class Of>
   [[nodiscard]] Window window(std::ptrdiff_t moved, Of&& of) const {
     Window found;
@@ -389,7 +390,7 @@ class TargetFilter {
         if (auto one = place(at)) found.push_back(std::move(*one));
     return found;
   }
-  /// None outside the record, or with too few free cells around.
+  /// A cell with the cells around it; none outside the record or with too few free cells around.
   [[nodiscard]] std::optional<Place> place(std::ptrdiff_t at) const {
     using Background = MatchedFilterPlan::Background;
     const SampleRange record{.first = 0, .count = whole_.samples};
@@ -414,20 +415,20 @@ class TargetFilter {
 };
 
 /// u = −ln P of one cell, P the probability of as high an answer in even Rayleigh noise.
-/// docs/theory/studies.md, eq. (12) and (16)
+/// Source: docs/theory/studies.md, eq. (12) and (16)
 class LevelOverBackground {
  public:
   /// \param noise  E|y|² of white noise alone
   LevelOverBackground(const MatchedFilterPlan& plan, double noise) : plan_(plan), noise_(noise) {}
 
-  /// \param mean  that is expected there, if the background is   \return NaN: not known
+  /// \param mean  expected power there, for backgrounds that are expected   \return NaN: not known
   [[nodiscard]] double over_mean(double power, double mean) const {
     if (plan_.background == Background::noise) mean = noise_;
     if (!(mean > 0.0)) return no_value;
     const double m = plan_.estimated_from();
     return std::isinf(m) ? power / mean : m * std::log1p(power / mean / m);
   }
-  /// \param others  the answers of the cells around   \param times  where they are, from this one
+  /// \param others  answers of the cells around   \param times  of these, after this cell
   [[nodiscard]] double over_others(double power, std::span<const double> others,
                                    std::span<const double> times) const {
     double sum = 0.0;

@@ -11,13 +11,13 @@
 
 namespace asdic::detail::study {
 
-/// What the matched filter says of one target: of its echo's cells, or as many without an echo, the
-/// highest over its background, as the ratio that is as rare in a single cell.
+/// Statistics of a target's matched filter. Each is that of the highest of the echo's cells over
+/// its background, given as the ratio that is equally improbable in a single cell.
 struct FilterAnswer {
   double present = 0.0;  ///< in the echo's cells; NaN: not known
-  double absent = 0.0;   ///< at a time without any echo; NaN: there is none in the record
+  double absent = 0.0;   ///< in the same cells, at a time without an echo; NaN: none in the record
   double threshold = 0.0, absent_threshold = 0.0;  ///< that the false-alarm probability asks for
-  std::string unknown{};                           ///< why `present` is not known
+  std::string unknown{};                           ///< reason why `present` is not known
 };
 
 /// Whether it is over its threshold, 0 or 1; NaN: not known, which is not the same as missed.

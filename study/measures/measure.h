@@ -28,11 +28,11 @@ class Collector {
            Column::Role role = Column::Role::measure);
   /// What columns are called from here on after their names: "_rock"; "" nothing.
   void of(std::string suffix) { suffix_ = std::move(suffix); }
-  /// Says why a value is not known.
+  /// Gives a reason why a value is not known; the first reason is kept.
   void explain(const std::string& why) {
     if (unknown_.empty()) unknown_ = why;
   }
-  /// Why the first value that is not known is not; "": nobody said.
+  /// Reason why the first unknown value is not known; "": none was given.
   [[nodiscard]] const std::string& unknown() const noexcept { return unknown_; }
 
  private:

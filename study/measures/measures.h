@@ -40,7 +40,7 @@ struct Measured {
   PingRecord record;                  ///< with samples, where the plan needs any
   std::vector<std::uint8_t> cells{};  ///< packed_counts(), where cells are counted
   ReceiverAnswers receiver{};         ///< where it is used, or asked for
-  std::string unknown{};              ///< why a value is not known
+  std::string unknown{};              ///< reason why a value is not known; "": none was given
 };
 /// \param simulator  of the realisation's scenario   \param shared  what draws of its background
 /// have in common with others   \param cost  gets what each stage took, where somebody asks

@@ -42,7 +42,7 @@ struct Row {
   std::uint64_t index = 0;
   bool valid = true;            ///< false: skipped (on_error = "skip"); its measures are NaN
   std::string fault;            ///< why it was skipped
-  std::string unknown{};        ///< why a measure is not known; of a row that was just made
+  std::string unknown{};        ///< why a measure is not known; "" in rows that were read
   std::vector<double> values;   ///< [columns]
   std::vector<float> pressure;  ///< kept time series, empty where none [channels × samples × iq]
   std::vector<std::size_t> pressure_shape;

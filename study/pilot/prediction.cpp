@@ -10,7 +10,7 @@
 namespace asdic::detail::study {
 namespace {
 
-/// An upper bound, or none.
+/// Returns an upper bound, or NaN where it is beyond what the rows support (most_supported).
 double supported(double high, double estimate) {
   return high <= most_supported * estimate ? high : std::nan("");
 }

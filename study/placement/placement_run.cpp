@@ -132,7 +132,7 @@ class Placing {
   }
 
  private:
-  /// The least that an option's run.memory allows.
+  /// Budget of the option whose run.memory is the least.
   static MemoryBudget budget_of_all(const PlacementPlan& plan) {
     MemoryBudget least = budget_of(plan.options.front().scenario);
     for (const PlacementOption& option : plan.options)

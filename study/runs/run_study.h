@@ -58,7 +58,7 @@ struct StudyOutcome {
   std::uint64_t made = 0, before = 0, total = 0;
   std::uint64_t skipped = 0;   ///< of all that are there, those whose values made no scenario
   std::uint64_t left_out = 0;  ///< rows in which the answer to the first question is not known
-  std::string unknown{};       ///< why in the first of them; "": it was not said
+  std::string unknown{};       ///< reason in the first of them; "": none was given
   std::string question{};      ///< its name, "pd"
   std::uint64_t damaged = 0;   ///< rows of journals that had to be made again
   bool written = false;        ///< the output is there
@@ -131,8 +131,8 @@ class Remaining {
 };
 /// realise(), with the row marked while it is in hand. \param hand  outlives it
 [[nodiscard]] Realise marked(const Realise& realise, RowsInHand& hand);
-/// A work's realise(), which notes it at once where the answer to the first question is known in
-/// none of the first ten valid rows, and why. Thread-safe.
+/// A work's realise() that also calls `note` once, with the reason, if the answer to the first
+/// question is not known in any of the first ten valid rows. Thread-safe.
 [[nodiscard]] Realise watched(const Work& work,
                               const std::function<void(const std::string& text)>& note);
 /// The suspects of a range that are not made: what a run begins with.

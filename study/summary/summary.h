@@ -58,7 +58,7 @@ class RunningEstimate {
   [[nodiscard]] const Clusters& clusters() const noexcept { return mean_.clusters(); }
   /// Valid rows in which the answer is not known or not finite: they do not count.
   [[nodiscard]] std::uint64_t left_out() const noexcept { return left_out_; }
-  /// Why the first of these is not known; "": it was not said.
+  /// Reason why the answer is not known in the first of these rows; "": none was given.
   [[nodiscard]] const std::string& unknown() const noexcept { return unknown_; }
 
  private:

@@ -106,7 +106,7 @@ void put_worth(SummaryTable& to, const RowMean& mean);
 /// Of the cells without an echo: rates by time, at every power of ten by counting or by a tail that
 /// is fitted, and the operating characteristic that they reach to.
 [[nodiscard]] std::vector<SummaryTable> cell_tables(const Study& study, const Table& table);
-/// Where the receiver makes more false alarms than even noise does. \return lines
+/// Warnings of a receiver that makes significantly more false alarms than even noise does.
 [[nodiscard]] std::vector<std::string> alarm_warnings(const Study& study, const Table& table);
 /// Where the false-alarm rates of these tables cannot be the one that is set, within a factor of
 /// 1.3: a sentence each.

@@ -124,7 +124,7 @@ class OrderedEstimate {
   [[nodiscard]] const std::string& name() const noexcept { return estimate_.name(); }
   /// Of these rows, those that are valid and tell nothing of the estimate.
   [[nodiscard]] std::uint64_t left_out() const noexcept { return estimate_.left_out(); }
-  /// Why the first of these is not known; "": it was not said.
+  /// Reason why the answer is not known in the first of these rows; "": none was given.
   [[nodiscard]] const std::string& unknown() const noexcept { return estimate_.unknown(); }
   [[nodiscard]] std::uint64_t waiting() const noexcept { return waiting_.size(); }
 

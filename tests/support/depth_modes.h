@@ -9,7 +9,7 @@ namespace asdic::detail::support {
 /// Normal modes of a layered sea without loss, by finite differences in depth: Sturm's count and
 /// bisection for the wavenumbers, inverse iteration for the modes. It shares nothing with asdic.
 struct DepthModes {
-  double step = 0.0;                     ///< [m]
+  double step = 0.0;                     ///< distance of the nodes [m]
   std::vector<double> wavenumber;        ///< [modes] [rad/m]
   std::vector<std::vector<double>> psi;  ///< [modes × nodes] at (i + 1)·step, ∫ψ²/ρ dz = 1
 
@@ -18,8 +18,8 @@ struct DepthModes {
     const auto i = std::size_t(place);
     return std::lerp(psi[mode][i], psi[mode][i + 1], place - double(i));
   }
-  /// Σ|p_m|² at a range of a unit source at 1 m, without interference. \param density  at the
-  /// source
+  /// Σ|p_m|², the intensity without interference, relative to 1 m from the source.
+  /// \param density  at the source
   [[nodiscard]] double energy(double source, double receiver, double range, double density) const {
     double sum = 0.0;
     for (std::size_t m = 0; m < wavenumber.size(); ++m) {
@@ -30,8 +30,9 @@ struct DepthModes {
   }
 };
 
-/// A sea between a free surface and, at `depth`, a rigid or a free end. Modes whose wavenumbers lie
-/// between two. \param speed, density  of a depth [m/s], any unit
+/// Modes of a sea between a free surface and, at `depth`, a rigid or a free end.
+/// \param speed, density  functions of depth [m/s], any unit
+/// \param least, most  bounds of the modes' wavenumbers [rad/m]
 inline DepthModes depth_modes(double frequency, double depth, bool rigid, int nodes,
                               const std::function<double(double)>& speed,
                               const std::function<double(double)>& density, double least,

@@ -47,8 +47,9 @@ struct LineBeam {
     return {taper, beamwidth, mount};
   }
   [[nodiscard]] std::string text(double elevation) const;
-  /// Full −3 dB width of the main lobe when it is steered [rad]. Near endfire the lobe goes on
-  /// beyond the vertical: twice as far as from its edge to there.
+  /// Full −3 dB width of the main lobe when it is steered to an elevation [rad]. A lobe that
+  /// reaches the vertical goes on beyond it, so its width is twice the angle from its edge to the
+  /// vertical.
   [[nodiscard]] double steered_width(double elevation) const noexcept;
 };
 

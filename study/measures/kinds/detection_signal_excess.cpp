@@ -9,7 +9,7 @@ namespace asdic::detail::study {
 namespace {
 
 /// The receiver whose threshold [measure.detection] sets, for one cell of an echo.
-/// \param ping  of a plan with a detection
+/// \param ping  measured by a plan that has a detection
 ListeningReceiver receiver_of(const MeasuredPing& ping, int target) {
   const MeasurePlan& plan = ping.plan;
   ListeningReceiver receiver{.array = plan.array,

@@ -86,7 +86,7 @@ TEST(MarchingRecall, UprightLegsSweepOverReceivers) {
     })) << launch;
 }
 
-/// A floor of a few nodes, drawn, under water that is drawn.
+/// An ocean whose water and whose floor of a few nodes are drawn at random.
 struct DrawnFloor {
   Environment ocean;
   double source = 0.0;

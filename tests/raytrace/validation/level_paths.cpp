@@ -52,7 +52,7 @@ TEST(LevelPaths, InIsovelocityWaterTheDirectRayIsThereWhateverTheDifference) {
       }
 }
 
-/// Depth under the source at a range, of a ray by Runge and Kutta's fourth-order steps.
+/// Depth of a ray under its source at a range, by fourth-order Runge–Kutta steps.
 struct Followed {
   double depth, slope;
 };
@@ -78,8 +78,8 @@ Followed follow(const SoundSpeedProfile& water, double depth, double slope, doub
 struct FlatRoot {
   double slope, q;
 };
-/// The rays of less than `most` that come to a depth: a fan that is even and, towards the level,
-/// even in the logarithm; roots by halving.
+/// Rays flatter than `most` that reach a depth: a fan with even steps, and with logarithmic steps
+/// towards the level, whose roots are bisected.
 std::vector<FlatRoot> brute_force(const SoundSpeedProfile& water, double source, double receiver,
                                   double range, double step, double most) {
   std::vector<double> fan = {0.0};
@@ -108,7 +108,7 @@ std::vector<FlatRoot> brute_force(const SoundSpeedProfile& water, double source,
   return found;
 }
 
-/// \param share  by which angle and q may be off
+/// \param share  relative error allowed to angle and q
 void expect_flat_rays(const SoundSpeedProfile& water, double bottom, double source, double receiver,
                       double range, double step, double share) {
   constexpr double most = 2e-3;

@@ -127,7 +127,7 @@ TEST(Listening, PingsByCommandAreHeardAsThoseOfTheSchedule) {
   for (std::size_t c = 0; c < channels; ++c) EXPECT_EQ(heard.rows[c], record[c]);
 }
 
-/// The served scenario with other lines in place of some of its own.
+/// The served scenario with some of its lines replaced.
 std::string with(std::vector<std::pair<std::string, std::string>> others) {
   std::string text = support::served_scenario;
   for (const auto& [line, other] : others) {

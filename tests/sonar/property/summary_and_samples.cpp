@@ -13,8 +13,8 @@
 namespace asdic::detail {
 namespace {
 
-/// A guide of that depth under a surface that reflects all, three phones whose second is the
-/// array's reference point, and what is received of a target as samples of a wide band.
+/// A wave guide of a depth with a perfectly reflecting surface and floor, a target, and three
+/// phones, the second at the array's reference point. Samples are baseband.
 Scenario guide(double depth, const PulseSettings& pulse) {
   Scenario s;
   s.environment.water = SoundSpeedProfile::isovelocity(1500.0);
@@ -152,7 +152,7 @@ TEST(SummaryAndSamples, NoiseIsThatOfTheSamples) {
   }
 }
 
-/// Mean over pings of the samples' mean square, in steps of the levels. [Pa²]
+/// Mean square of the samples, averaged over pings, in the steps of `/levels` [Pa²].
 struct MeanOfPings {
   std::vector<double> samples, levels;
   double expected_db = 0.0, from = 0.0, to = 0.0;  // at the echo's time, and that in its pulse

@@ -17,7 +17,7 @@ namespace {
 
 using support::Csv;
 
-/// A point target of 10 dB, a vertical line of phones 9 m apart below and above the ship.
+/// A ship on a shelf, a vertical line of phones 9 m apart about it, and a point target of 10 dB.
 struct Shelf {
   std::string data;
   Environment sea;
@@ -73,7 +73,7 @@ Shelf across() {
           1.25,
           4000.0};
 }
-/// \param phones  numbers of those of the line that there are
+/// \param phones  numbers of the line's phones that the array has
 Scenario scenario_of(const Shelf& shelf, std::span<const int> phones) {
   Scenario s;
   s.environment = shelf.sea;
@@ -107,7 +107,7 @@ std::span<const float> of_phone(const PingRecord& record, int phone) {
       .subspan(std::size_t(phone) * record.recording.samples, record.recording.samples);
 }
 
-/// What is received beside the truth, in the sweep's band and 25 Hz on either side of it.
+/// Comparison of what is received with the truth, in the sweep's band and 25 Hz on either side.
 struct Beside {
   double correlation, energy_db;
 };
@@ -152,7 +152,7 @@ TEST(ShelfEcho, AcrossASmoothLayerIsTheWavesByDefault) {
   expect_truth(across(), BandOfLosses::automatic, 0.97);
 }
 
-/// Energy of what phones of the line differ by from the same phones alone, the most [dB].
+/// Largest energy of the difference between phones of the line and the same phones alone [dB].
 double beside_alone_db(const Shelf& shelf, BandOfLosses band, std::span<const int> phones) {
   Scenario s = scenario_of(shelf, phones);
   s.propagation.band = band;

@@ -21,7 +21,7 @@ constexpr double range = 3000.0, depth = 100.0, speed = 1500.0;  // [m], [m/s]
 constexpr double source_level = 200.0, noise_level = 52.0, strength = 10.0, probability = 1e-3;
 constexpr double phones = 2.0, energy = 0.375 * 0.1;  // of a Hann window of 0.1 s [s]
 
-/// Lengths of the direct path and of the one by the mirror of the surface [m].
+/// Lengths of the direct path and of the path reflected by the surface [m].
 struct Legs {
   explicit Legs(double target)
       : direct(std::hypot(range, target - depth)), surface(std::hypot(range, target + depth)) {}
@@ -45,8 +45,8 @@ class EchoWindow : public testing::Test {
                                                       measure + support::plain_sea),
                       overrides);
   }
-  /// The target's depth at which the surface adds three cells to a path: pairs of paths lie 0, 3, 3
-  /// and 6 cells late.
+  /// Depth of the target at which the path by the surface is three cells longer, so that the pairs
+  /// of paths arrive 0, 3, 3 and 6 cells late [m].
   double depth_of_three_cells() {
     const Study study = read("snr_matched = true\n");
     const PingSimulator simulator(example_of(study));
@@ -63,7 +63,7 @@ class EchoWindow : public testing::Test {
   static std::string at_depth(double z) {
     return "target.0.position=[" + std::to_string(range) + ", 0.0, " + std::to_string(z) + "]";
   }
-  /// Shares of rows in which there is a false alarm, and in which the echo's cells are over.
+  /// Shares of rows with a false alarm, and with a detection in the echo's cells.
   std::pair<double, double> rates(const Study& study, int rows) {
     const Realiser realiser(study);
     const std::vector<Column> all = columns(study);
