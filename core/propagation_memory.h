@@ -41,7 +41,8 @@ enum class Kept : std::uint64_t {
   reverberation_covariance,
   covariance_spectra,
   reverberation_streams,
-  noise_factors
+  noise_factors,
+  mean_reverberation
 };
 
 /// All the numbers that decide a result, bit for bit: best made of what the function that finds it

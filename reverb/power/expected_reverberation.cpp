@@ -64,12 +64,14 @@ float extent_of(const PathPair& pair, const GroundPiece& piece) noexcept {
                             std::abs(pair.out_ends->down + pair.back_ends->down) * piece.thickness);
 }
 
+/// Difference of two sounds' phases over a piece beyond which their interference is nothing, e⁻⁹.
+constexpr float out_of_phase = 4.2426407F;
+
 /// exp(−½|Δ|²), Δ the difference of two sounds' phases over their piece; 0 where it is below e⁻⁹.
 float in_phase(const std::array<float, 3>& one, const std::array<float, 3>& other) noexcept {
-  constexpr float nothing = 18.0F;  // e⁻⁹
   float phases = 0.0F;
   for (std::size_t k = 0; k < 3; ++k) phases += (one[k] - other[k]) * (one[k] - other[k]);
-  return phases < nothing ? std::exp(-0.5F * phases) : 0.0F;
+  return phases < out_of_phase * out_of_phase ? std::exp(-0.5F * phases) : 0.0F;
 }
 
 /// A sound of a place at a time.
@@ -435,21 +437,25 @@ std::vector<double> ExpectedReverberation::mean_power(const SentPulse& pulse, do
       if (i + 1 < cuts[task + 1] && samples[i + 1].place == sample.place &&
           samples[i + 1].part == sample.part)
         continue;
-      std::sort(here.begin(), here.end(),
-                [](const PlacedSound& a, const PlacedSound& b) { return a.delay < b.delay; });
+      // Few are in phase with one another over their piece: those of almost one steepness.
+      std::sort(here.begin(), here.end(), [](const PlacedSound& a, const PlacedSound& b) {
+        return std::tie((*a.phases)[0], a.delay) < std::tie((*b.phases)[0], b.delay);
+      });
       for (std::size_t a = 0; a < here.size(); ++a) {
         const PlacedSound& one = here[a];
         steps.add(pulse.energy * std::norm(one.pressure), one.delay, one.extent, pulse.duration);
         for (std::size_t b = a + 1; b < here.size() && !one.by_itself; ++b) {
           const PlacedSound& other = here[b];
+          if ((*other.phases)[0] - (*one.phases)[0] >= out_of_phase) break;
           const double later = other.delay - one.delay;
-          if (later >= pulse.duration) break;
-          if (other.by_itself) continue;
+          if (other.by_itself || std::abs(later) >= pulse.duration) continue;
           const auto together = double(in_phase(*one.phases, *other.phases));
           if (!(together > 0.0)) continue;
-          const double both =
-              2.0 * together *
-              (one.pressure * std::conj(other.pressure) * pulse.coherence(later)).real();
+          const std::complex<double> coherence = pulse.coherence(std::abs(later));
+          const double both = 2.0 * together *
+                              (one.pressure * std::conj(other.pressure) *
+                               (later < 0.0 ? std::conj(coherence) : coherence))
+                                  .real();
           steps.add(pulse.energy * both, 0.5 * (one.delay + other.delay),
                     0.5 * (one.extent + other.extent), pulse.duration);
         }

@@ -24,10 +24,10 @@ void LevelMeter::add_noise(double variance) {
   for (float& value : series_.noise) value += static_cast<float>(variance);
 }
 
-void LevelMeter::add_reverberation(const PingReverberation& sea, double peak_pressure,
-                                   double share) {
+void LevelMeter::add_reverberation(const PingReverberation& sea, double peak_pressure, double share,
+                                   PropagationMemory& memory) {
   std::vector<float>& into = series_.reverberation;
-  const std::vector<double> power = sea.mean_power(start_, series_.time_step, into.size());
+  const std::vector<double> power = sea.mean_power(start_, series_.time_step, into.size(), memory);
   for (std::size_t i = 0; i < into.size(); ++i)
     into[i] += static_cast<float>(0.5 * share * peak_pressure * peak_pressure * power[i]);
 }

@@ -22,7 +22,8 @@ class LevelMeter {
   /// \param peak_pressure  of the source at 1 m [Pa], the unit of the baseband
   void add_echo(const Baseband& received, double peak_pressure);
   /// \param share  of all phones, that belong to the array which receives it
-  void add_reverberation(const PingReverberation& sea, double peak_pressure, double share);
+  void add_reverberation(const PingReverberation& sea, double peak_pressure, double share,
+                         PropagationMemory& memory);
   void add_noise(double variance);  ///< of every sample [Pa²]
 
   [[nodiscard]] LevelSeries series() const { return series_; }

@@ -453,7 +453,8 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
     step(0.5, "reverberation at the phones");
     if (scenario_.reverberation.enabled) {
       levels.add_reverberation(scattered.back(), peak_pressure,
-                               double(phones.size()) / double(record.phones.size()));
+                               double(phones.size()) / double(record.phones.size()),
+                               paths_->memory());
       const Synthesizer& voice = filtered ? *filtered : synthesizer;
       const PhoneGroups groups = reverberation_groups(emission, array, whole, scattered.back());
       record.plane_waves.groups =

@@ -96,14 +96,24 @@ double PingReverberation::expected_db(double t) const {
                               context_.pulse.duration(), t));
 }
 
-std::vector<double> PingReverberation::mean_power(double first, double step,
-                                                  std::size_t count) const {
+std::vector<double> PingReverberation::mean_power(double first, double step, std::size_t count,
+                                                  PropagationMemory& memory) const {
+  if (fields_.empty()) return std::vector<double>(count, 0.0);
   const Pulse& pulse = context_.pulse;
-  return expected_->mean_power({.coherence = *pulse_coherence(pulse),
-                                .duration = pulse.duration(),
-                                .energy = pulse.energy(),
-                                .frequency = pulse.centre_frequency()},
-                               first, step, count);
+  const auto coherence = pulse_coherence(pulse);
+  const auto find = [&] {
+    return std::make_shared<std::vector<double>>(
+        expected_->mean_power({.coherence = *coherence,
+                               .duration = pulse.duration(),
+                               .energy = pulse.energy(),
+                               .frequency = pulse.centre_frequency()},
+                              first, step, count));
+  };
+  auto key = ExpectedReverberation::key(fields_, pulse.duration(), Kept::mean_reverberation);
+  if (!key) return *find();
+  key->add_all(coherence->fingerprint(), pulse.energy(), first, step, count);
+  return *memory.remember(
+      *key, find, [](const std::vector<double>& power) { return power.size() * sizeof(double); });
 }
 
 PatchRows PingReverberation::rows(std::size_t most, PropagationMemory* memory) const {

@@ -66,8 +66,9 @@ class PingReverberation final : public ReturnSource {
 
   /// Expected power as the mean over steps of time: the peak envelope's square over that of the
   /// source at 1 m. \param first  beginning of the first step, since the ping [s]
-  /// \param step  [s]   \return [count]
-  [[nodiscard]] std::vector<double> mean_power(double first, double step, std::size_t count) const;
+  /// \param step  [s]   \param memory  keeps it for pings whose sea is the same   \return [count]
+  [[nodiscard]] std::vector<double> mean_power(double first, double step, std::size_t count,
+                                               PropagationMemory& memory) const;
 
   /// \param most  rows   \param memory  of what is kept; null: none
   [[nodiscard]] PatchRows rows(std::size_t most, PropagationMemory* memory = nullptr) const;
