@@ -32,8 +32,8 @@ WINDOW = 4          # blocks later than one that lacks a piece, until it is give
 LONGEST_GAP = 65536  # blocks or packets
 LONGEST_DELAY = 4096  # packets
 LONGEST_DESCRIPTOR = 4096  # fragments
-MOST_DESCRIPTORS = 4       # that are not whole
-SILENCE = 5.0              # of the stream's sender, after which another one's may be joined [s]
+MOST_DESCRIPTORS = 4       # incomplete descriptors that are kept
+SILENCE = 5.0              # of the sender, after which another sender's stream may be joined [s]
 
 
 class Block:
@@ -88,7 +88,7 @@ class Assembler:
         self.blocks = self.lost_blocks = 0
         self.about, self.ended, self.sender = None, False, None
         self._stream, self._over = None, False  # its number; whether it has ended
-        self._heard = 0.0       # when something of it came last [s]
+        self._heard = 0.0       # time of its last packet [s]
         self._partial = {}      # number → [first sequence, fragments, {fragment: bytes}]
         self._own, self._strange = {}, {}  # descriptors: key → [fragments, {fragment: bytes}]
         self._next = self._before = self._begin = self._latest = 0
@@ -121,7 +121,7 @@ class Assembler:
                     self._join(about, first, fragments, sender, stream, now)
             return []
         self._heard = now
-        far = self._is_far(sequence)  # after a long gap its next descriptor tells
+        far = self._is_far(sequence)  # after a long gap only a descriptor counts
         if not far and not self._is_new(sequence):
             return []
         if kind == DESCRIPTOR:
@@ -217,7 +217,7 @@ class Assembler:
         if about.get("ended"):
             self._partial.clear()
             self.ended = self._over = True
-        elif about["block"] >= self._anchor[0]:  # not one that comes late
+        elif about["block"] >= self._anchor[0]:  # not if it is a late repetition
             self._tell(about, after)
         return given
 
@@ -227,7 +227,7 @@ class Assembler:
         whole = -(-self._longest // PAYLOAD)  # packets of a block
         known, after = self._anchor
         if (not self._next <= number <= self._next + LONGEST_GAP or _ahead(first, self._begin) < 0
-                or (number - known) * whole > max(_ahead(first, after), 0)  # so many were sent before it
+                or (number - known) * whole > max(_ahead(first, after), 0)  # packets sent before it, at the least
                 or size > self._longest or (fragment + 1 == fragments and size % self._row)):
             self.foreign += 1
             return []

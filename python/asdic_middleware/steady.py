@@ -1,8 +1,8 @@
 """The middleware's time as it goes on evenly."""
 import time
 
-MOST_SKEW = 10.0   # of a stamp against the clock [s]; beyond it counts as now
-LEAST_STEP = 1.0   # of the clock, that is reported [s]
+MOST_SKEW = 10.0   # largest skew of a stamp against the clock [s]; beyond it the stamp counts as now
+LEAST_STEP = 1.0   # smallest step of the clock that is reported [s]
 
 
 class Steady:
@@ -17,8 +17,8 @@ class Steady:
     def __init__(self, clock, factor=1.0, followed=False):
         self._clock, self._factor, self._followed = clock, factor, followed
         self._near = max(factor, 1.0)
-        self._ahead = None  # of the even clock; None: not begun
-        self._known = 0.0   # how far the clock was set, as it was reported [s]
+        self._ahead = None  # offset of the even clock [s]; None before the beginning
+        self._known = 0.0   # reported steps of the clock, their sum [s]
 
     def begin(self):
         """From now on, once the middleware's clock is known."""

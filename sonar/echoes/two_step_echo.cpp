@@ -162,7 +162,7 @@ class MovingLeg {
 
 class TwoSteps {
  public:
-  /// \param part  of the band; null: the pulse's centre stands for it
+  /// \param part  part of the band; null: amplitudes at the centre serve the whole band
   TwoSteps(const EchoContext& context, const ManyEchoes& many, const TwoStepReceivers& receivers,
            const Recording& recording, double max_doppler, const BandPart* part)
       : context_(context),
@@ -412,9 +412,9 @@ class TwoSteps {
   Recording recording_;
   double max_doppler_;
   double latest_;         // end of the record [s]
-  const BandPart* part_;  // null: the pulse's centre stands for the band
+  const BandPart* part_;  // null: amplitudes at the centre serve the band
   MovingPaths moving_;    // at the part's frequency
-  std::size_t places_;    // of the target: its highlights, or itself
+  std::size_t places_;    // number of the target's highlights, or 1
 };
 
 }  // namespace

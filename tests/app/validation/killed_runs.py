@@ -63,7 +63,7 @@ class KilledRuns(unittest.TestCase):
             folder = f"next_{kind}"
             words = ("export", "big.h5", f"--{kind}", "-o", folder)
             if not self.killed(signal.SIGKILL, folder, *words):
-                continue  # it was too quick
+                continue  # the command ended before the signal
             self.assertNotEqual(self.litter(folder), [])
             self.assertIn("no whole ping", self.asdic("recover", folder))
             self.asdic(*words)

@@ -161,7 +161,7 @@ def scenarios():
     yield pulse(kind="pulse_train", start_frequency=900.0, end_frequency=1100.0, pulses=4, pulse_duration=0.01)
     yield pulse(kind="pulse_train", frequency=1000.0, pulses=4, pulse_duration=0.01)
     yield ping(pulse={"kind": "file", "samples": [0.0, 1.0, 0.0, -1.0] * 8, "sample_rate": 4000.0}, **QUIET)
-    # what sends and what receives
+    # transmitters and arrays
     yield ping(platform={"position": None, "velocity": None,
                          "waypoints": [{"time": 0.0, "position": [0.0, 0.0, 30.0]},
                                        {"time": 100.0, "position": [200.0, 0.0, 30.0]}]},

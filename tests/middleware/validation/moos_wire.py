@@ -257,7 +257,7 @@ def test_set_clock():
     counts by its age on the clock that stamped it.
     """
     for warp in (1.0, 20.0):
-        wall = [0.0]  # by which the clock was set
+        wall = [0.0]  # step of the clock [s]
         clock = Steady(lambda: warp * (time.monotonic() + wall[0]), warp)
         clock.begin()
         came, errors = [], []
@@ -283,7 +283,7 @@ def test_set_clock():
         due.stop()
         letting_go.join()
         check(not errors, f"{errors}")
-    paused = Steady(lambda: 5.0, 1.0, followed=True)  # a simulation's
+    paused = Steady(lambda: 5.0, 1.0, followed=True)  # clock of a simulation
     paused.begin()
     time.sleep(0.01)
     check(paused() == 5.0 and paused.stepped() == 0.0, "it stands")

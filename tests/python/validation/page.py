@@ -287,7 +287,7 @@ class Page(unittest.TestCase):
             done = run(MPLBACKEND=backend)
             self.assertEqual((done.returncode, done.stderr), (0, ""), backend)
         (self.folder / "file").write_text("")
-        self.assertEqual(run(MPLCONFIGDIR=str(self.folder / "file")).returncode, 0)  # another folder does
+        self.assertEqual(run(MPLCONFIGDIR=str(self.folder / "file")).returncode, 0)  # another folder is used
         (self.folder / "settings").write_bytes(b"axes.grid: \xff\xfe\n")
         done = run(MATPLOTLIBRC=str(self.folder / "settings"))
         self.assertEqual(done.returncode, 1)
