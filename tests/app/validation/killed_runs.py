@@ -17,7 +17,7 @@ import h5py
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "support"))
 
-from small_sea import SEA  # noqa: E402
+from plain_sea import SEA  # noqa: E402
 
 ASDIC = Path(os.environ["ASDIC"]).resolve()
 
@@ -28,8 +28,8 @@ class KilledRuns(unittest.TestCase):
         cls.folder = tempfile.TemporaryDirectory(prefix="asdic_killed_")
         cls.at = Path(cls.folder.name)
         (cls.at / "sea.toml").write_text(SEA)
-        cls.asdic("ping", "sea.toml", "-q", "--set", "array.phones=64", "--set", "pings.recording_duration=30.0", "-o",
-                  "big.h5")
+        large = ("array.phones=64", "pings.samples=pressure", "pings.sample_rate=4000.0", "pings.recording_duration=30.0")
+        cls.asdic("ping", "sea.toml", "-q", *(word for key in large for word in ("--set", key)), "-o", "big.h5")
 
     @classmethod
     def tearDownClass(cls):

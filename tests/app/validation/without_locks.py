@@ -21,7 +21,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tests" / "support"))
 
-from small_sea import SEA  # noqa: E402
+from plain_sea import SEA  # noqa: E402
 
 ASDIC = Path(os.environ["ASDIC"]).resolve()
 COMPILER = os.environ.get("CC") or shutil.which("cc")
