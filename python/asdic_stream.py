@@ -72,11 +72,11 @@ def _read(text):
 
 
 class Assembler:
-    """Packets in, blocks out, in order; without sockets. Whatever bytes it is fed, memory stays bounded.
+    """Puts packets together into blocks, in order, without sockets. For any input memory stays bounded.
 
-    It is bound to the sender and the number of the stream that it joins at a descriptor. The sender's
-    next stream is taken where it begins; another sender's when the stream has ended, or when nothing
-    of it came for SILENCE seconds.
+    It is bound to the sender and the number of the stream that it joins at a descriptor. It takes the
+    sender's next stream when that begins, and another sender's stream when its own has ended or has
+    been silent for SILENCE seconds.
 
     packets, lost, reordered, duplicates, foreign   packets so far
     others                                          packets of other streams so far
@@ -96,8 +96,9 @@ class Assembler:
         self._seen = set()
 
     def take(self, packet, sender=None, now=0.0):
-        """sender: whatever tells senders apart; now: by a clock that never goes back [s]
-        → list of Block that are complete by it
+        """Takes a packet → list of the Blocks that it completes
+
+        sender: any value that distinguishes senders; now: time by a clock that never goes back [s]
         """
         if not HEADER.size < len(packet) <= HEADER.size + PAYLOAD:
             self.foreign += 1
@@ -159,7 +160,7 @@ class Assembler:
         return True
 
     def _descriptor(self, waiting, whose, first, fragment, fragments, payload):
-        """→ what it says, once it is whole; else None"""
+        """Takes a fragment of a descriptor → its content once it is complete; otherwise None"""
         if fragments > LONGEST_DESCRIPTOR:
             self.foreign += 1
             return None
@@ -178,7 +179,7 @@ class Assembler:
         return about
 
     def _join(self, about, first, fragments, sender, stream, now):
-        """A stream begins, or is joined: what was sent before its descriptor does not belong to it."""
+        """Begins or joins a stream; packets sent before its descriptor do not belong to it."""
         after = (first + fragments) % 0x100000000
         if self.about is None or sender != self.sender or self._is_far(first):
             self._latest = (first - 1) % 0x100000000
@@ -200,7 +201,7 @@ class Assembler:
         self._longest = self._row * about["block_samples"]
 
     def _described(self, about, first, fragments, far):
-        """Its own descriptor."""
+        """Takes a descriptor of the joined stream."""
         if about["stream"] != self.about["stream"] or self._over:
             return []
         given, after = [], (first + fragments) % 0x100000000

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Every number of a scenario has physical bounds, and at them asdic refuses or computes: no number that is none, no hang.
+"""Every number of a scenario has physical bounds. At them asdic refuses or computes, without NaN and without hanging.
 
 The bounds are those of `asdic settings --schema`. Each number of the scenarios below is set to its bounds in turn, to
 the least numbers above 0 where 0 is allowed, and to what lies just outside. The truth is that sound pressure is a
@@ -297,7 +297,7 @@ def numbers_to_try(rules):
 
 
 def run(folder, number, command, tables, value):
-    """What asdic makes of a scenario. -> "" or what is wrong, whether it was refused"""
+    """Runs a scenario. -> "" or what is wrong, whether it was refused"""
     scenario, result = Path(folder, f"{number}.toml"), Path(folder, f"{number}.h5")
     scenario.write_text("\n".join(f"{key} = {toml(one)}" for key, one in tables.items()) + "\n")
     words = [ASDIC, command, scenario, "-o", result, "-q", "--threads", "1"]

@@ -54,7 +54,7 @@ class WithoutLocks(unittest.TestCase):
         cls.folder.cleanup()
 
     def asdic(self, *words, refused=0):
-        """Runs a command; \\refused: the error of every lock."""
+        """Runs a command; refused: the error number of every lock, 0: locks work."""
         more = {"LD_PRELOAD": str(self.library), "NO_LOCKS": str(refused)} if refused else {}
         return subprocess.run([ASDIC, *words], cwd=self.folder.name, env={**os.environ, **more}, capture_output=True,
                               text=True)

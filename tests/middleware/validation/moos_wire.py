@@ -253,8 +253,8 @@ def test_missions():
 
 def test_set_clock():
     """The machine's clock is set back by 600 s, then ahead by 1200 s, while a result waits for its
-    time: by a clock that nobody sets it comes when it is due. The step is reported once. A message
-    counts by its age on the clock that stamped it.
+    time. It comes when it is due, because the time of results follows a clock that nobody sets. The
+    step is reported once. A message counts by its age on the clock that stamped it.
     """
     for warp in (1.0, 20.0):
         wall = [0.0]  # step of the clock [s]

@@ -395,8 +395,8 @@ def packet(kind, sequence, block, content, stream=7, fragment=0, fragments=1):
 
 
 def is_bound_to_its_sender():
-    """A stranger's packets, whatever numbers they guess, neither give a block nor stop one; who comes
-    back after a long gap goes on at a descriptor; another sender is taken when this one is silent.
+    """Packets of a stranger, whatever numbers they guess, neither give nor stop a block. After a long gap
+    the reader continues at a descriptor; it takes another sender when this one is silent.
     """
     loud, quiet = np.full(250, 1e6, "<f4").tobytes(), bytes(1000)
     reader = Assembler()
