@@ -351,7 +351,7 @@ class EchoFinder {
   /// A number that names the transmitter and the target.
   [[nodiscard]] std::uint64_t entity() const {
     return mixed(static_cast<std::uint64_t>(geometry_.sent().transmitter),
-                 static_cast<std::uint64_t>(index_));
+                 target_identity(scenario_, index_));
   }
 
   /// What rough boundaries scatter about a pair of paths. \param echoes  of the pair's own

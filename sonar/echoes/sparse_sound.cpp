@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <numbers>
 #include <optional>
 #include <unordered_map>
@@ -193,13 +194,27 @@ bool across_the_band(const EchoContext& context, const Transmitter& projector,
          tolerable_change;
 }
 
+SparseSound by_band(const EchoContext& context, const Transmitter& projector,
+                    std::vector<EchoPath> paths) {
+  std::stable_sort(paths.begin(), paths.end(),
+                   [](const EchoPath& a, const EchoPath& b) { return a.target < b.target; });
+  SparseSound sorted;
+  for (auto first = paths.begin(), last = first; first != paths.end(); first = last) {
+    last = std::find_if(first, paths.end(),
+                        [&](const EchoPath& path) { return path.target != first->target; });
+    std::vector<EchoPath>& into =
+        across_the_band(context, projector, {first, last}) ? sorted.wide : sorted.narrow;
+    into.insert(into.end(), std::make_move_iterator(first), std::make_move_iterator(last));
+  }
+  return sorted;
+}
+
 Baseband wide_band_sound(const EchoContext& context, const Transmitter& projector,
                          std::span<const EchoPath> paths, std::span<const Vec3> phones,
-                         const Recording& recording, double max_doppler) {
+                         const Recording& recording, double max_doppler, Baseband more) {
   double longest = 0.0;
   for (const EchoPath& path : paths) longest = std::max(longest, path.response.path_length);
   const WideBand band(context, projector, paths, longest, recording, max_doppler);
-  Baseband all;
   std::vector<EchoPath> filtered(paths.begin(), paths.end());
   for (std::size_t k = 0; k < band.nodes().frequencies.size(); ++k) {
     const BandPart at = band.part(k);
@@ -223,13 +238,13 @@ Baseband wide_band_sound(const EchoContext& context, const Transmitter& projecto
     }
     Baseband sound = narrow_band_sound(
         Synthesizer(*context.pulse, recording, max_doppler, at.filter), filtered, phones);
-    if (k == 0)
-      all = std::move(sound);
+    if (more.channels == 0)
+      more = std::move(sound);
     else
-      std::transform(sound.values.begin(), sound.values.end(), all.values.begin(),
-                     all.values.begin(), std::plus<>{});
+      std::transform(sound.values.begin(), sound.values.end(), more.values.begin(),
+                     more.values.begin(), std::plus<>{});
   }
-  return all;
+  return more;
 }
 
 }  // namespace asdic::detail

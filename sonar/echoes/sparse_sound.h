@@ -34,6 +34,17 @@ inline constexpr double tolerable_change = 0.06;
 [[nodiscard]] bool across_the_band(const EchoContext& context, const Transmitter& projector,
                                    std::span<const EchoPath> paths);
 
+/// Echoes and direct blasts at an array, by how they are received.
+struct SparseSound {
+  std::vector<EchoPath> narrow;  ///< with the amplitudes of the pulse's centre frequency
+  std::vector<EchoPath> wide;    ///< by wide_band_sound()
+};
+
+/// Sorts echoes and blasts by how they are received. Each target is judged by its own echoes, and
+/// the blast by itself, so the echoes of several targets are the sum of each target's own.
+[[nodiscard]] SparseSound by_band(const EchoContext& context, const Transmitter& projector,
+                                  std::vector<EchoPath> paths);
+
 /// Parts of a pulse's band by which echoes along paths like these are received.   \param longest
 /// longest path there and back [m]
 [[nodiscard]] std::vector<BandPart> band_parts(const EchoContext& context,
@@ -52,9 +63,10 @@ inline constexpr double tolerable_change = 0.06;
 /// pulses, each passed through one of Lagrange's polynomials over the band, with the amplitudes at
 /// its own frequency. The cost is K times that of narrow_band_sound(). Source:
 /// docs/theory/synthesis.md, "Across the band".   \param projector  as it pings
+/// \param more  sound of the same recording to which it is added
 [[nodiscard]] Baseband wide_band_sound(const EchoContext& context, const Transmitter& projector,
                                        std::span<const EchoPath> paths,
                                        std::span<const Vec3> phones, const Recording& recording,
-                                       double max_doppler);
+                                       double max_doppler, Baseband more = {});
 
 }  // namespace asdic::detail

@@ -281,7 +281,7 @@ class TwoSteps {
         context_, moving_, [&](double since) { return geometry_.source_at(since); },
         {.track = target_.track},
         mixed(static_cast<std::uint64_t>(geometry_.sent().transmitter),
-              mixed(1, static_cast<std::uint64_t>(index_))));
+              mixed(1, target_identity(scenario_, index_))));
     struct Piece {
       BandLimitedPulse wave;
       Returns returns;
@@ -358,7 +358,7 @@ class TwoSteps {
     const Carried receiver = geometry_.receiver(array, channel);
     MovingLeg leg(
         context_, moving_, [&](double since) { return target_at(since); }, receiver,
-        mixed(static_cast<std::uint64_t>(index_), mixed(2, static_cast<std::uint64_t>(array))));
+        mixed(target_identity(scenario_, index_), mixed(2, static_cast<std::uint64_t>(array))));
     const Vec3 x =
         channel < 0 ? Vec3::Zero() : receivers_.phones[static_cast<std::size_t>(channel)];
     for_each_piece(
