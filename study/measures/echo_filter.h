@@ -41,13 +41,12 @@ struct FreeCell {
   double level = 0.0;  ///< −ln P, P the probability of as high an answer in even Rayleigh noise
 };
 
-/// Ratio of the matched filter y(τ) = ∫ p₊(t) s₊*(η(t − τ)) dt / ∫|s₊|² dt to its background. η,
-/// and the slowness of a beam, are those of the target's strongest path. y is computed in all cells
-/// of 1/B that have at least a hundredth of the power of the loudest one. The background is E|y|² =
-/// 2N₀/(n∫|s₊|²dt) of the white noise of n phones, the mean of |y|² in the nearest cells without
-/// echoes, the same along a trend of their level, or the mean over draws. If no path reaches the
-/// target, the cell is that of sound along a straight line. Source: docs/theory/studies.md, eq.
-/// (1)–(3), (16) and (27)
+/// y(τ) = ∫ p₊(t) s₊*(η(t − τ)) dt / ∫|s₊|² dt at the Doppler factor η and, of a beam, the slowness
+/// of the target's strongest path, in all cells of 1/B in which its paths bring a hundredth of what
+/// the loudest has; over its background. That is E|y|² = 2N₀/(n∫|s₊|²dt) of n phones' white noise,
+/// the mean of |y|² in the nearest cells that are free of echoes, the same along a trend of their
+/// level, or the mean over draws. A target that no path reaches is listened for when the sound
+/// would come along a straight line. Source: docs/theory/studies.md, eq. (1)–(3), (16) and (27)
 /// \param record  the whole, or the part of it that samples_for_filter() names
 /// \param false_alarm_probability  of all cells of the echo together, for the thresholds
 /// \param expected  of this target
