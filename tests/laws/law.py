@@ -147,6 +147,7 @@ def norm(samples):
 
 def alike(a, b, s, share, what, phones=slice(None), part=slice(None)):
     """Two records are the same but for `share` of all their paths' amplitudes together."""
+    a, b = program.at_one_rate(a, b)
     expect(a.pressure.shape[0] == b.pressure.shape[0], f"{what}: {a.pressure.shape} and {b.pressure.shape} samples")
     x, y = a.pressure[:, phones, part], b.pressure[:, :, part]
     n = min(x.shape[-1], y.shape[-1])
