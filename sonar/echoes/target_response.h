@@ -15,8 +15,8 @@ struct Look {
   int own_ping = 1;  ///< of the transmitter's own pings, counted from 1
 };
 
-/// A number that names a target in its draws: of its own name, and so the same wherever it stands
-/// in the list of targets. Of several alike the first, the second … have numbers of their own.
+/// Number that names a target in its draws. It follows from the target's name, so it does not
+/// depend on the target's place in the list. Targets of equal names are numbered in their order.
 [[nodiscard]] std::uint64_t target_identity(const Scenario& scenario, int target);
 
 /// Factor of a highlight's amplitude, E|w|² = 1 (1 where it does not fluctuate).

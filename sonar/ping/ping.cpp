@@ -376,7 +376,7 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
   const auto unheard = [&](const EchoPath& echo) {
     return !heard.meets(echo.received.delay - 1.0, echo.received.delay + longest);
   };
-  bool wide = false;  // any is received across the band
+  bool wide = false;  // whether any echo is received across the band
   for (SparseSound& of_array : sparse) {
     wide = wide || !of_array.wide.empty();
     std::erase_if(of_array.narrow, unheard);

@@ -25,14 +25,14 @@ using Scratch = FftBuffer<std::complex<float>>;
 /// Impulses on the ping's clock: number i comes after the delay i/rate, in whatever record.
 struct DelayGrid {
   double rate = 1.0;                  // [Hz]
-  std::ptrdiff_t begin = 0, end = 0;  // those that a record may receive
-  double middle = 0.0;                // of a pulse, after its impulse [s]
-  double turn = 0.0;                  // of the baseband's carrier, from the pulse's frequency [Hz]
+  std::ptrdiff_t begin = 0, end = 0;  // numbers that a record may receive
+  double middle = 0.0;                // time from an impulse to the middle of its pulse [s]
+  double turn = 0.0;                  // baseband's carrier less the pulse's frequency [Hz]
 
   [[nodiscard]] double delay(std::ptrdiff_t i) const noexcept {
     return static_cast<double>(i) / rate;
   }
-  /// The first one at or after a delay.
+  /// Number of the first impulse at or after a delay.
   [[nodiscard]] std::ptrdiff_t at(double delay) const noexcept {
     return static_cast<std::ptrdiff_t>(std::ceil(delay * rate));
   }
@@ -113,7 +113,7 @@ void draw_segment(const ReverberationCovariance& of, std::size_t index, const Co
 }  // namespace
 
 struct Synthesizer::CovarianceSpectra {
-  double half_band = 0.0;   // that holds the pulse but for −80 dB of its energy [Hz]
+  double half_band = 0.0;   // band that holds the pulse up to −80 dB of its energy [Hz]
   std::size_t highest = 0;  // the same in bins of the period
   std::vector<std::complex<float>> values;  // [K × (2·highest + 1)]
 };
@@ -185,8 +185,8 @@ void Synthesizer::add_gaussian(const ReverberationCovariance& covariance,
   const std::size_t phones = baseband.channels, responses = covariance.band.frequencies.size();
   assert(covariance.components == phones * responses && baseband.samples <= plan.length);
   const auto spectra = covariance_spectra(covariance.band);
-  // White noise of any rate above the pulse's band is as good as another: it stands on the ping's
-  // slowest clock, so that it is the same in any record. An impulse stands in the pulse's middle.
+  // White noise of any rate above the pulse's band serves. The slowest clock of the ping is used,
+  // so that the noise is the same in any record. An impulse lies in the middle of its pulse.
   const std::size_t fine = baseband.samples;
   const auto [rate, length] = plan.clock(2.0 * spectra->half_band);
   const std::size_t highest = std::min(spectra->highest, (std::min(length, fine) - 1) / 2);

@@ -151,11 +151,11 @@ class FineSpectrum {
 /// carrier is the pulse's own frequency.
 struct StreamGrid {
   double rate = 1.0;                  // [Hz]
-  std::ptrdiff_t begin = 0, end = 0;  // of impulses that a record may receive
+  std::ptrdiff_t begin = 0, end = 0;  // numbers of impulses that a record may receive
   std::size_t guard = 0;              // samples by which a pulse hangs over its impulse
   double half_band = 0.0;             // of the sound about the carrier [Hz]
   double centre = 0.0;                // frequency of the pulse, and carrier [Hz]
-  double turn = 0.0;                  // of the record's carrier, from there [Hz]
+  double turn = 0.0;                  // record's carrier less that frequency [Hz]
   double own_half_band = 0.0;         // of the pulse about it, as any stream's factor has it [Hz]
   double pulse_duration = 1.0;        // [s]
 
@@ -290,7 +290,7 @@ Piece piece_of(const ReverberationStreams& sea, const StreamBlock& block, const 
   const double step = 1.0 / (spacing * static_cast<double>(own_length));  // between impulses [s]
   const double origin = grid.delay_of(begin);
   PowerOfSteps power_of(block, sea.bin, origin, block_end, step);
-  // The whole block has its draws, whatever part of it is received.
+  // All of the block is drawn, whatever part of it is received.
   const auto received_step = [&](std::size_t j) {
     const double delay = origin + (static_cast<double>(j) + 0.5) * step;
     return delay >= grid.delay_of(grid.begin) && delay < grid.delay_of(grid.end);

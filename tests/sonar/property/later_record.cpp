@@ -9,7 +9,7 @@
 namespace asdic::detail {
 namespace {
 
-/// A floor 150 m below a ship, of which every ping draws the scatterers anew.
+/// A floor 150 m below a ship, with new scatterers for every ping.
 Scenario floor_below(ScattererSynthesis synthesis, Samples samples, const PulseSettings& pulse) {
   Scenario s = support::mirrored_floor(200.0, 50.0, -27.0, pulse);
   s.reverberation.synthesis = synthesis;
@@ -46,9 +46,9 @@ double difference(Scenario s, double share) {
   return std::sqrt(off / all);
 }
 
-// What a ping draws of the sea belongs to the ping. Interpolation and what is cut off beside a
-// stream's band are below −60 dB: 1e-3 in each record. Drawn from a record's first sample on, 0.03
-// to 1.4 of it differed.
+// The draws of the sea belong to the ping, not to the record. Errors by interpolation, and by
+// cutting off a stream's band, are below −60 dB, 1e-3 in each record. When draws began at a
+// record's first sample, the difference was 0.03 to 1.4.
 TEST(LaterRecord, HoldsTheSameReverberation) {
   const PulseSettings sweep{.waveform = Lfm{.start_frequency = 3950.0, .end_frequency = 4050.0},
                             .duration = 0.1},

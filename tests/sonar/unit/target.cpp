@@ -122,8 +122,9 @@ TEST(Swerling, OneAndThreeLastAScanTwoAndFourAPing) {
   EXPECT_EQ(fluctuation(fluctuating(Fluctuation::none, 1), 0, 0, {}), 1.0);
 }
 
-// Draws belong to a target, not to its place in the list: that of its fluctuation and those of what
-// a rough sea scatters about its echoes. Synthesis is linear but for rounding, 1e-6 of the peak.
+// Draws of a target's fluctuation, and of the scattering of its echoes by a rough sea, belong to
+// the target and not to its place in the list. Synthesis is linear up to rounding, 1e-6 of the
+// peak.
 TEST(Targets, AreReceivedTogetherAsAlone) {
   Scenario s = support::two_platforms();
   s.environment.bottom.depth = 200.0;

@@ -129,9 +129,10 @@ Scenario near_and_far() {
   return s;
 }
 
-// By default each target is received as it is alone: the far one across the band, beside one that
-// is 28 dB louder. Synthesis leaves out −80 dB of that, −52 dB of the far one, in each of three
-// runs. Judged together by their energy neither is: then the far one is off by 0.1 and more.
+// By default each target is received as if it were alone: the far one across the band, next to one
+// that is 28 dB louder. In each of three runs the synthesis leaves out −80 dB of the louder one,
+// −52 dB of the far one. If both were judged by their common energy, neither would be received
+// across the band, and the far one would be off by at least 0.1.
 TEST(WideBand, IsChosenForEachTargetByItself) {
   const Scenario s = near_and_far();
   const auto received = [&](std::vector<Target> targets) {
