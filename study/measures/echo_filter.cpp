@@ -375,7 +375,7 @@ class TargetFilter {
   [[nodiscard]] std::vector<double> answers(const PingRecord& received, const SampleRange& part,
                                             const Window& window) const {
     const std::size_t samples = received.recording.samples;
-    constexpr std::size_t few = 8;  // that are sums in time; more take a transform
+    constexpr std::size_t few = 8;  // sums in time; more cells take a transform
     std::vector<double> powers;
     if (window.size() > few) {
       const std::ptrdiff_t first = window.front().at, last = window.back().at;
@@ -394,7 +394,7 @@ class TargetFilter {
   }
 
  private:
-  /// The echo's cells moved by `moved` samples. \param of  which of them to take
+  /// The echo's cells moved by `moved` samples.   \param of  whether to take a cell
   template <class Of>
   [[nodiscard]] Window window(std::ptrdiff_t moved, Of&& of) const {
     Window found;
@@ -522,8 +522,8 @@ FilterAnswer filter_answer(const PingSimulator& simulator, const PingRecord& rec
     }
     return level.over_others(power, around, times);
   };
-  // Of a window the cell that is the least probable by chance stands for all: as the ratio that is
-  // as rare in one cell, so that (3) is its threshold.
+  // The cell of a window that is least probable by chance represents the window, given as the ratio
+  // that is equally improbable in one cell, so that (3) is its threshold.
   const auto compare = [&](const TargetFilter::Window& window, const std::vector<double>& means,
                            double& statistic, double& threshold) {
     const std::vector<double> powers = one.answers(record, part, window);

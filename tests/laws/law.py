@@ -147,6 +147,7 @@ def norm(samples):
 
 def alike(a, b, s, share, what, phones=slice(None), part=slice(None)):
     """Two records are the same but for `share` of all their paths' amplitudes together."""
+    a, b = program.at_one_rate(a, b)
     expect(a.pressure.shape[0] == b.pressure.shape[0], f"{what}: {a.pressure.shape} and {b.pressure.shape} samples")
     x, y = a.pressure[:, phones, part], b.pressure[:, :, part]
     n = min(x.shape[-1], y.shape[-1])
@@ -157,6 +158,33 @@ def alike(a, b, s, share, what, phones=slice(None), part=slice(None)):
         expect(off <= share * most,
                f"{what}: phone {phone} differs by {off / most:.2e} of all paths together ({off / max(norm(x[:, phone]), 1e-300):.2e} "
                f"of the record), at most {share:.1e}")
+
+
+def alike_in_the_mean(a, b, s, share, what):
+    """The same samples, or the same paths where rough boundaries scatter about them.
+
+    What is scattered is drawn from the waves of the sea at the places of the bounces (docs/theory/surface-scattering.md,
+    Energy): other places have other waves. Mean fields, delays and the energy that is scattered have no such draw.
+    """
+    if not np.any(np.nan_to_num(a.arrivals.get("scattered", np.zeros(1))) > 0.0):
+        alike(a, b, s, share, what)
+        return
+    for name, rows, others in (("arrivals", a.arrivals, b.arrivals), ("echoes", a.echoes, b.echoes)):
+        x, y = (pressures(one, s["_hz"]) for one in (rows, others))
+        expect(x.shape == y.shape, f"{what}: {x.shape} and {y.shape} {name}")
+        off, most = np.abs(x - y).max(initial=0.0), np.abs(x).sum()
+        expect(off <= share * most, f"{what}: one of the {name} differs by {off / max(most, 1e-300):.2e} of all, at most {share:.1e}")
+
+
+def pressures(rows, hz):
+    """Paths at a frequency, and the roots of what is scattered about them; echoes with what is scattered, in the mean."""
+    if not rows or len(rows["delay"]) == 0:
+        return np.zeros(0)
+    turned = np.exp(-2j * np.pi * hz * rows["delay"])
+    if "level_db" in rows:
+        return 10 ** (rows["level_db"] / 20) * turned
+    return np.concatenate([(rows["amplitude_real"] + 1j * rows["amplitude_imag"]) * turned,
+                           np.sqrt(np.nan_to_num(rows["scattered"]))])
 
 
 def field(rows, hz):

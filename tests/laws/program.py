@@ -3,6 +3,7 @@ import hashlib
 import json
 import os
 import re
+import resource
 import shutil
 import signal
 import subprocess
@@ -15,7 +16,7 @@ import numpy as np
 
 from schema import ASDIC
 
-SECONDS = int(os.environ.get("ASDIC_LAWS_SECONDS", "20"))  # of processor time, after which a run is ended
+SECONDS = int(os.environ.get("ASDIC_LAWS_SECONDS", "12"))  # of processor time, after which a run is ended
 
 
 class Refused(Exception):
@@ -28,6 +29,11 @@ class Dear(Exception):
 
 class Violation(AssertionError):
     """A law does not hold."""
+
+
+def spent():
+    """Seconds of processor time of this process and of the runs that have ended."""
+    return sum(sum(resource.getrusage(who)[:2]) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
 
 
 def word(value):
@@ -106,7 +112,8 @@ class Record:
             self.phone_position = file["phone_position"][...]
             self.valid = file["valid_samples"][...]
             self.ping_time = file["ping_time"][...]
-            self.warnings = [str(one) for one in np.ravel(file.attrs["warnings"])] if "warnings" in file.attrs else []
+            self.warnings = [one.decode() if isinstance(one, bytes) else str(one) for one in np.ravel(file.attrs["warnings"])] \
+                if "warnings" in file.attrs else []
             for name in ("arrivals", "bounces", "echoes", "summary", "levels", "patches"):
                 group = file.get(name)
                 setattr(self, name, {key: group[key][...] for key in group} if group is not None else {})
@@ -126,12 +133,11 @@ class Record:
             rows &= a["channel"] == (channels.min() if channel is None else channel)
         return {key: value[rows] for key, value in a.items() if len(value) == len(rows)}
 
-    def envelope(self):
-        """Analytic signal of the samples (ping, channel, sample)."""
-        if self.carrier is not None:
-            return self.pressure
-        from scipy.signal import hilbert
-        return hilbert(self.pressure, axis=-1)
+    def peak(self):
+        """Greatest modulus of the analytic signal, between samples as well [Pa]."""
+        from scipy.signal import hilbert, resample
+        whole = self.pressure if self.carrier is not None else hilbert(self.pressure, axis=-1)
+        return float(np.max(np.abs(resample(whole, 8 * whole.shape[-1], axis=-1))))
 
 
 _known = OrderedDict()
@@ -139,7 +145,7 @@ _known = OrderedDict()
 
 def ping(scenario, *options):
     """The record of a scenario; remembered, since several laws ask for the same one."""
-    key = (toml(scenario), tuple(sorted(scenario.get("_files", {}).items())), options)
+    key = (toml(scenario), tuple(sorted(scenario.get("_files", {}).items())), options, os.environ.get("ASDIC_FAULT"))
     if key in _known:
         _known.move_to_end(key)
         value = _known[key]
@@ -148,6 +154,7 @@ def ping(scenario, *options):
             with Folder(scenario) as folder:
                 run(folder, "ping", "s.toml", "-o", "o.h5", "-q", "--threads", "1", *options)
                 value = Record(folder / "o.h5")
+                value.scenario, value.options = scenario, options
         except (Refused, Violation, Dear) as fault:
             value = fault
         _known[key] = value
@@ -156,6 +163,13 @@ def ping(scenario, *options):
     if isinstance(value, Exception):
         raise value
     return value
+
+
+def at_one_rate(*records):
+    """The records at one sample rate, the highest of theirs: baseband's follows from all that moves, a rough sea as well."""
+    rate = max(one.rate for one in records)
+    return [one if one.rate > (1 - 1e-9) * rate else
+            ping(one.scenario | {"pings": one.scenario["pings"] | {"baseband_rate": rate}}, *one.options) for one in records]
 
 
 def cost(scenario, command, *options):

@@ -1,7 +1,6 @@
 """The same thing said otherwise, or more finely: nothing changes."""
 import math
 
-from hypothesis import strategies as st
 
 import program
 from law import Silent, alike, copied, expect, law, ping, plain, stratified
@@ -12,7 +11,7 @@ def table(s, interpolation, p):
     from law import water_depth
     depth = water_depth(s)
     return {"kind": "table", "interpolation": interpolation, "depth": [0.0, 0.4 * depth, 1.2 * depth],
-            "speed": [1500.0, 1500.0 - p("fall", st.sampled_from([4.0, 0.0, 12.0, -6.0])), 1501.0]}
+            "speed": [1500.0, 1500.0 - p("fall", [4.0, 0.0, 12.0, -6.0]), 1501.0]}
 
 
 @law
@@ -20,11 +19,11 @@ def node_on_a_line(s, p):
     """A sample put on a straight piece of the profile changes nothing. Layers of waves are cut at samples: 1 % of a leg."""
     s = plain(s)
     e = s["environment"]
-    law = p("interpolation", st.sampled_from(["c-linear", "n2-linear"]))
+    law = p("interpolation", ["c-linear", "n2-linear"])
     e["sound_speed"] = table(s, law, p)
     first = ping(s)
-    share = p("at", st.sampled_from([0.5, 0.01, 0.999]))
-    piece = p("piece", st.sampled_from([0, 1]))
+    share = p("at", [0.5, 0.01, 0.999])
+    piece = p("piece", [0, 1])
     s2 = copied(s)
     water = s2["environment"]["sound_speed"]
     z0, z1 = water["depth"][piece:piece + 2]
@@ -42,7 +41,7 @@ def isovelocity_as_a_table(s, p):
     s["environment"]["sound_speed"] = {"kind": "isovelocity", "speed": 1500.0}
     first = ping(s)
     s2 = copied(s)
-    kind = p("interpolation", st.sampled_from(["c-linear", "n2-linear", "spline", "pchip"]))
+    kind = p("interpolation", ["c-linear", "n2-linear", "spline", "pchip"])
     from law import water_depth
     depth = water_depth(s)
     s2["environment"]["sound_speed"] = {"kind": "table", "interpolation": kind, "depth": [0.0, 0.3 * depth, 0.7 * depth, 1.2 * depth],
@@ -70,14 +69,14 @@ def split_layer(s, p):
     s = plain(s)
     bottom = s["environment"]["bottom"]
     geometry = {k: v for k, v in bottom.items() if k in ("depth", "shape")}
-    thick = p("thickness", st.sampled_from([0.5, 2.0, 0.1])) * 1500.0 / s["_hz"]
+    thick = p("thickness", [0.5, 2.0, 0.1]) * 1500.0 / s["_hz"]
     layer = {"speed": 1560.0, "density": 1600.0, "attenuation_db_per_wavelength": 0.3}
-    if p("solid", st.booleans()):
+    if p("solid", [False, True]):
         layer |= {"shear_speed": 200.0, "shear_attenuation_db_per_wavelength": 1.0}
     half = {"speed": 1800.0, "density": 2000.0, "attenuation_db_per_wavelength": 0.5}
     s["environment"]["bottom"] = {"kind": "layered", **geometry, **half, "layer": [{"thickness": thick, **layer}]}
     s2 = copied(s)
-    part = p("part", st.sampled_from([0.5, 0.1, 0.9]))
+    part = p("part", [0.5, 0.1, 0.9])
     s2["environment"]["bottom"]["layer"] = [{"thickness": part * thick, **layer}, {"thickness": (1 - part) * thick, **layer}]
     alike(ping(s), ping(s2), s, 1e-3, f"a layer of {thick:g} m cut in two")
 
@@ -110,7 +109,7 @@ def flat_shape(s, p):
     s2 = copied(s)
     bottom = s2["environment"]["bottom"]
     depth = bottom.pop("depth")
-    bottom["shape"] = {"interpolation": p("interpolation", st.sampled_from(["piecewise-linear", "smooth", "curvilinear"])),
+    bottom["shape"] = {"interpolation": p("interpolation", ["piecewise-linear", "smooth", "curvilinear"]),
                        "range": [-1e4, 0.0, 3e3, 1e5], "depth": [depth] * 4}
     alike(first, ping(s2), s, 0.02, "a shape of one depth")
 
@@ -123,7 +122,7 @@ def finer_map(s, p):
     depth = e["bottom"].pop("depth")
     cell = (max(abs(x) for x in s["target"][0].get("position", [100.0, 0.0])[:2]) + 50.0) / 111195.0  # degrees
     e["origin"] = {"latitude_deg": 0.0, "longitude_deg": 0.0}
-    how = p("interpolation", st.sampled_from(["bicubic", "faceted"]))
+    how = p("interpolation", ["bicubic", "faceted"])
 
     def grid(n, step):
         lines = [f"ncols {n}", f"nrows {n}", f"xllcenter {-step * (n // 2)!r}", f"yllcenter {-step * (n // 2)!r}", f"cellsize {step!r}", "NODATA_value -99999"]
@@ -166,7 +165,7 @@ def other_units(s, p):
     first = ping(s)
     s2 = copied(s)
     from scenarios import attenuation
-    unit = p("unit", st.sampled_from(["per metre kHz", "quality", "loss parameter"]))
+    unit = p("unit", ["per metre kHz", "quality", "loss parameter"])
     floor = s2["environment"]["bottom"]
     del floor["attenuation_db_per_wavelength"]
     floor |= attenuation(0.5, unit, 1650.0, s["_hz"])

@@ -1,9 +1,12 @@
 #!/usr/bin/env python3
 """The law machine: draws scenarios, holds them to laws, shrinks what fails and keeps it. docs/develop/laws.md.
 
-    run.py --draws 0                     CI: replays what was found; run.py alone: some 60 draws with the seed of the day as well
+    run.py                               replays what was found, then makes some 60 draws with the seed of the day
     run.py --minutes 60 --jobs 2         an hour of draws; --seed S, --law NAME (again for more), --draws N
     run.py --replay [NAME ...]           replays alone
+    run.py --faults [NAME ...]           which law finds which deliberate fault (scripts/laws_mutations.sh)
+
+A draw is a scenario held to a law. A scenario is held to several, which share its runs.
 """
 import argparse
 import collections
@@ -11,6 +14,7 @@ import datetime
 import hashlib
 import json
 import os
+import random
 import re
 import sys
 import time
@@ -25,28 +29,36 @@ sys.path.insert(0, str(HERE))
 import hypothesis  # noqa: E402
 from hypothesis import HealthCheck, Phase, given, settings, strategies as st  # noqa: E402
 from hypothesis.errors import Flaky, UnsatisfiedAssumption  # noqa: E402
-from hypothesis.internal.conjecture import engine  # noqa: E402
 
 import covering  # noqa: E402
 import program  # noqa: E402
 import scenarios  # noqa: E402
 from law import LAWS, Silent, copied  # noqa: E402
-from program import Dear, Refused, Violation  # noqa: E402
+from program import Dear, Refused, Violation, spent  # noqa: E402
 import bounds, cost, limits, live, refinement, same_bits, summary, symmetry  # noqa: E402,E401,F401
 
 FOUND = HERE / "found"
 OUTCOMES = ("held", "silent", "refused", "dear", "known", "violated")
+EACH = 8  # laws that a scenario is held to
+BUDGET = 20.0  # seconds of processor time, after which a scenario meets no further law
+
+
+class Enough(BaseException):
+    """The time for shrinking is over; no Exception, so Hypothesis lets it through."""
 
 
 class Parameters:
-    """What a law draws beside its scenario, kept so that it can be replayed."""
+    """What a law chooses beside its scenario, each of a few values: by a number that is drawn, or as it was kept.
 
-    def __init__(self, draw=None, values=None):
-        self.draw, self.values = draw, {} if values is None else dict(values)
+    The number 0, towards which Hypothesis shrinks, chooses the first value of each.
+    """
 
-    def __call__(self, name, strategy):
+    def __init__(self, number=0, values=None):
+        self.number, self.values = number, {} if values is None else dict(values)
+
+    def __call__(self, name, choices):
         if name not in self.values:
-            self.values[name] = strategy.example() if self.draw is None else self.draw(strategy)
+            self.values[name] = choices[0] if self.number == 0 else random.Random(f"{self.number} {name}").choice(choices)
         return self.values[name]
 
 
@@ -65,10 +77,10 @@ def is_known(law, s, text):
     return None
 
 
-def attempt(law, s, values):
+def attempt(law, s, p):
     """(outcome, text) of a law on a scenario."""
     try:
-        LAWS[law](copied(s), values if isinstance(values, Parameters) else Parameters(values=values))
+        LAWS[law](copied(s), p)
     except Silent as why:
         return "silent", str(why)
     except Refused as why:
@@ -82,42 +94,55 @@ def attempt(law, s, values):
     return "held", ""
 
 
-def hold(law, row, levels, seed, shrink_seconds):
-    """Draws a scenario about a row, holds it to a law, and shrinks it where it fails: (outcome, text, scenario, parameters)."""
-    last = {"outcome": ("held", ""), "first": None}
-    engine.MAX_SHRINKING_SECONDS = shrink_seconds
+def drawn(row, levels, seed, test, phases=(Phase.generate,)):
+    """Calls test(scenario, number) with what Hypothesis draws about a row; again while it raises Violation, to shrink it."""
+    failed = False
 
     @hypothesis.seed(seed)
     @settings(max_examples=1, database=None, deadline=None, derandomize=False, print_blob=False, report_multiple_bugs=False,
-              phases=(Phase.generate, Phase.shrink), suppress_health_check=list(HealthCheck))
+              phases=phases, suppress_health_check=list(HealthCheck))
     @given(st.data())
-    def holds(data):
+    def once(data):
+        nonlocal failed
         # Hypothesis first tries examples that are zero but for their first draw, which say nothing about the row.
         first, second = data.draw(st.integers(0, 255)), data.draw(st.integers(0, 255))
-        if 0 in (first, second) and "violated" not in last:
+        if 0 in (first, second) and not failed:
             hypothesis.reject()
         s = data.draw(scenario_of(row, levels))
-        p = Parameters(draw=data.draw)
-        outcome, text = attempt(law, s, p)
-        if last["first"] is None:
-            last["first"] = True
-            last["outcome"] = (outcome, text, s, dict(p.values))
-        if outcome == "violated" and is_known(law, s, text) is None:
-            last["violated"] = (outcome, text, s, dict(p.values))
-            raise Violation(re.sub(r"[0-9.e+-]+", "#", text))
-        if outcome == "violated":
-            last["outcome"] = ("known", is_known(law, s, text), s, dict(p.values))
+        number = data.draw(st.integers(0, 255))
+        try:
+            test(s, number)
+        except Violation:
+            failed = True
+            raise
 
     try:
-        holds()
-    except (Violation, Flaky, UnsatisfiedAssumption):
+        once()
+    except (Violation, Flaky, UnsatisfiedAssumption, Enough):
         pass
-    return last.get("violated", last["outcome"] if len(last["outcome"]) == 4 else (*last["outcome"], None, {}))
 
 
 @st.composite
 def scenario_of(draw, row, levels):
     return scenarios.scenario(draw, row, levels)
+
+
+def shrunk(law, row, levels, seed, seconds):
+    """The simplest violation of a law that is found in some seconds of processor time: (text, scenario, parameters)."""
+    simplest, end = None, spent() + seconds
+
+    def test(s, number):
+        nonlocal simplest
+        if simplest is not None and spent() > end:
+            raise Enough
+        p = Parameters(number)
+        outcome, text = attempt(law, s, p)
+        if outcome == "violated" and is_known(law, s, text) is None:
+            simplest = text, s, p.values
+            raise Violation(re.sub(r"[0-9.e+-]+", "#", text))
+
+    drawn(row, levels, seed, test, (Phase.generate, Phase.shrink))
+    return simplest
 
 
 def written(law, s, values, text, origin):
@@ -144,7 +169,7 @@ def replay(names):
         if names and path.stem not in names:
             continue
         law, s, values = read(path)
-        outcome, text = attempt(law, s, values)
+        outcome, text = attempt(law, s, Parameters(values=values))
         if outcome == "violated" and path.stem in expected:
             print(f"  known     {path.stem}: {expected[path.stem]}")
         elif outcome == "violated":
@@ -158,40 +183,57 @@ def replay(names):
     return good
 
 
-def work(options, job):
-    """Draws of one process; yields (law, outcome, text, scenario, parameters, number of the row)."""
+def scenes(options, job):
+    """Rows of the covering array with a scenario about each: (row, seed, scenario, number for parameters)."""
     levels = scenarios.factors()
-    names = options.law or list(LAWS)
-    rows = covering.rows(levels, options.seed * 1000 + job)
-    end = time.monotonic() + 60 * options.minutes if options.minutes else None
-    n = 0
-    row_number = -1
-    row = None
-    draws = -(-options.draws // options.jobs)
-    while (time.monotonic() < end) if end else (n < draws):
-        if row is None or n % options.each == 0:
-            row, row_number = next(rows), row_number + 1
-        # Every row meets `each` laws, and every law comes as often as any other.
-        law = names[(n + job * len(names) // max(options.jobs, 1)) % len(names)]
+    for n, row in enumerate(covering.rows(levels, options.seed * 1000 + job)):
         seed = int.from_bytes(hashlib.sha256(f"{options.seed} {job} {n}".encode()).digest()[:8], "big")
-        yield (law, *hold(law, row, levels, seed, options.shrink), row_number)
-        n += 1
+        got = []
+        drawn(row, levels, seed, lambda s, number: got.append((s, number)))
+        if got:
+            yield row, seed, *got[-1]
+
+
+def work(options, job):
+    """Draws of one process: (law, outcome, text, scenario, parameters, row, seed).
+
+    Every law comes as often as any other: where a scenario has used up its time, the next goes on with the next law.
+    """
+    names = options.law or list(LAWS)
+    end = time.monotonic() + 60 * options.minutes if options.minutes else None
+    draws, turn = -(-options.draws // options.jobs), job * len(names) // options.jobs
+    n = 0
+    for row, seed, s, number in scenes(options, job):
+        began = spent()
+        for _ in range(min(EACH, len(names))):
+            if (time.monotonic() > end) if end else (n >= draws):
+                return
+            law, p = names[turn % len(names)], Parameters(number)
+            outcome, text = attempt(law, s, p)
+            if outcome == "violated" and (why := is_known(law, s, text)) is not None:
+                outcome, text = "known", why
+            yield law, outcome, text, s, p.values, row, seed
+            n, turn = n + 1, turn + 1
+            if spent() - began > BUDGET:
+                break
 
 
 def report(options, job, out):
     counts = collections.defaultdict(collections.Counter)
-    for n, (law, outcome, text, s, values, row) in enumerate(work(options, job)):
+    levels, began = scenarios.factors(), spent()
+    for law, outcome, text, s, values, row, seed in work(options, job):
         counts[law][outcome] += 1
+        counts["_"]["seconds"] = spent() - began
         if outcome == "violated":
-            origin = f"{law}: drawn by scripts/laws.sh, seed {options.seed}, job {job}, row {row}"
+            print(f"  VIOLATED  {law}: {text}", flush=True)
+            text, s, values = shrunk(law, row, levels, seed, options.shrink) or (text, s, values)
+            origin = f"{law}: drawn by scripts/laws.sh, seed {options.seed}, job {job}"
             name = f"{law}-{hashlib.sha256(program.toml(s).encode()).hexdigest()[:6]}"
             folder = Path(options.keep)
             folder.mkdir(parents=True, exist_ok=True)
             (folder / f"{name}.toml").write_text(written(law, s, values, text, origin))
-            print(f"  VIOLATED  {name}: {text}", flush=True)
-            if options.until_found:
-                print(f"found after {n + 1} draws", flush=True)
-                break
+            print(f"  kept as   {name}: {text}", flush=True)
+            began = spent() - counts["_"]["seconds"]  # shrinking is no draw
         elif options.verbose:
             print(f"  {outcome:9} {law}: {text[:300]}", flush=True)
         if out is not None:
@@ -199,13 +241,41 @@ def report(options, job, out):
     return counts
 
 
+def find_faults(options):
+    """Prints for each deliberate fault and its law the number of draws until it is found, and whether all are.
+
+    A fault is found by a scenario on which the law is broken with it and not broken without it.
+    """
+    lines = [line.split() for line in (HERE / "mutations/faults.txt").read_text().splitlines() if not line.startswith("#")]
+    drawing, pool, good = scenes(options, 0), [], True
+    for fault, law in lines:
+        if options.faults and fault not in options.faults or options.law and law not in options.law:
+            continue
+        outcomes, said = collections.Counter(), None
+        for n in range(options.draws):
+            if n == len(pool):
+                pool.append(next(drawing)[2:])
+            s, number = pool[n]
+            os.environ["ASDIC_FAULT"] = fault
+            outcome, text = attempt(law, s, Parameters(number))
+            del os.environ["ASDIC_FAULT"]
+            if outcome == "violated" and attempt(law, s, Parameters(number))[0] != "violated":
+                said = f"found after {n + 1} draws: {text[:120]}"
+                break
+            outcomes[outcome] += 1
+        good &= said is not None
+        print(f"{fault:22} {law:28} {said or f'NOT FOUND in {options.draws} draws: {dict(outcomes)}'}", flush=True)
+    return good
+
+
 def table(counts):
+    seconds = counts.pop("_", {}).get("seconds", 0.0)
     print(f"{'law':30}" + "".join(f"{name:>10}" for name in OUTCOMES))
     total = collections.Counter()
     for law in sorted(counts):
         total.update(counts[law])
         print(f"{law:30}" + "".join(f"{counts[law].get(name, 0):>10}" for name in OUTCOMES))
-    print(f"{'all':30}" + "".join(f"{total.get(name, 0):>10}" for name in OUTCOMES) + f"   {sum(total.values())} draws")
+    print(f"{'all':30}" + "".join(f"{total.get(name, 0):>10}" for name in OUTCOMES) + f"   {sum(total.values())} draws, {seconds:.0f} s of processor time")
 
 
 def main():
@@ -213,19 +283,20 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--minutes", type=float)
     parser.add_argument("--draws", type=int, default=60)
-    parser.add_argument("--each", type=int, default=1, help="laws that each row of the covering array meets")
     parser.add_argument("--seed", type=int, default=today)
     parser.add_argument("--law", action="append", choices=sorted(LAWS))
     parser.add_argument("--jobs", type=int, default=1)
-    parser.add_argument("--shrink", type=float, default=60.0, help="seconds for which a failing draw is shrunk")
+    parser.add_argument("--shrink", type=float, default=60.0, help="seconds of processor time for which a failing draw is shrunk")
     parser.add_argument("--keep", default=str(FOUND), help="folder for what is found")
     parser.add_argument("--replay", nargs="*", metavar="NAME")
     parser.add_argument("--no-replay", action="store_true")
-    parser.add_argument("--until-found", action="store_true", help="ends with the first violation")
+    parser.add_argument("--faults", nargs="*", metavar="NAME")
     parser.add_argument("--verbose", action="store_true")
     options = parser.parse_args()
     if options.replay is not None:
         sys.exit(0 if replay(options.replay) else 1)
+    if options.faults is not None:
+        sys.exit(0 if find_faults(options) else 1)
     print(f"laws: seed {options.seed}" + (f", {options.minutes:g} minutes" if options.minutes else f", {options.draws} draws"), flush=True)
     good = options.no_replay or replay([])
     if options.jobs > 1:

@@ -20,7 +20,7 @@ PLACES = ["free", "node", "minimum", "equal", "millimetre", "hair", "shallow", "
 def recipes():
     """Factors of the recipes: name → levels."""
     return {
-        "depth": list(DEPTHS), "frequency": list(FREQUENCIES), "distance": ["medium", "near", "far"],
+        "depth": list(DEPTHS), "frequency": list(FREQUENCIES), "distance": ["medium", "near", "far", "steep"],
         "sea": ["flat", "floor", "swell", "ice", "area"],
         "profile": ["isovelocity"] + [k for k in schema.words_at("environment", "sound_speed", "kind") if k != "isovelocity"],
         "interpolation": schema.words_at("environment", "sound_speed", "interpolation"),
@@ -126,7 +126,9 @@ def scenario(draw, row, levels):
     # What sea water absorbs on the way (Thorp, roughly) is at most 30 dB, and nobody is further than 20 000 wavelengths.
     absorbed = 0.11e-3 * (hz / 1e3) ** 2 / (1 + (hz / 1e3) ** 2) + 0.044 * (hz / 1e3) ** 2 / (4100 + (hz / 1e3) ** 2)
     furthest = min(30.0 / max(absorbed, 1e-9), 2e4 * 1500.0 / hz, 60 * depth, 4e4)
-    reach = {"medium": 0.2, "near": 0.05, "far": 0.7}[level["distance"]] * furthest * d.between(1.0, 1.4)
+    share = d.between(1.0, 1.4)
+    reach = min(depth, furthest) * (2 * share - 1.8) if level["distance"] == "steep" else \
+        {"medium": 0.2, "near": 0.05, "far": 0.7}[level["distance"]] * furthest * share
     reach = digits(max(reach, 5.0, 3 * 1500.0 / hz))
     s = {"_files": {}, "title": "drawn", "seed": d.one_of(1, 2, 3)}
     if level["sea"] in ("floor", "swell", "area") or level["profile"] == "section":

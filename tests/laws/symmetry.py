@@ -2,10 +2,9 @@
 import math
 
 import numpy as np
-from hypothesis import strategies as st
 
-from law import (LAWS, Silent, alike, copied, db, energy, everywhere, expect, field, law, loudness, need_leg, norm, one_place, ping,
-                 plain, still, stratified, warned)
+from law import (LAWS, Silent, alike, alike_in_the_mean, copied, db, energy, everywhere, expect, field, law, loudness,
+                 need_leg, norm, one_place, ping, plain, still, stratified, warned)
 
 
 @law
@@ -68,13 +67,13 @@ def turned_world(s, p):
     1e-4 since waves' kernels are found for ranges that round otherwise (waves.md: pressures to 1e-7, shares to 1e-5)."""
     s = without_map(plain(s))
     first = ping(s)
-    angle = p("angle", st.sampled_from([90.0, 180.0, 37.0, 270.0, 5.0]))
+    angle = p("angle", [90.0, 180.0, 37.0, 270.0, 5.0])
     alike(first, ping(turned(copied(s), angle)), s, 1e-4, f"turned by {angle:g} degrees")
 
 
 @law
 def mirrored_world(s, p):
-    """Samples do not know right from left. As `turned_world`."""
+    """Samples do not know right from left, but for waves that are drawn, which are not mirrored. As `turned_world`."""
     s = without_map(plain(s))
     first = ping(s)
     m = copied(s)
@@ -104,25 +103,28 @@ def mirrored_world(s, p):
     if "bearing_deg" in t:
         t["bearing_deg"] = -t["bearing_deg"]
     m["environment"]["transect"] = {"bearing_deg": 0.0}
-    alike(first, ping(m), s, 1e-4, "mirrored")
+    alike_in_the_mean(first, ping(m), s, 1e-4, "mirrored")
 
 
 @law
 def moved_world(s, p):
-    """Samples do not know where the map's [0, 0] is. 1e-9 m of rounding at 1e6 m: 1e-6 of a wavelength of 1 mm."""
+    """Samples do not know where the map's [0, 0] is, but for waves that are drawn, which are those of a place.
+
+    1e-9 m of rounding at 1e6 m: 1e-6 of a wavelength of 1 mm.
+    """
     s = without_map(plain(s))
     first = ping(s)
-    dx, dy = p("east", st.sampled_from([1000.0, -7.0, 1e5])), p("north", st.sampled_from([0.0, 123.0, -2e4]))
+    dx, dy = p("east", [1000.0, -7.0, 1e5]), p("north", [0.0, 123.0, -2e4])
     m = everywhere(copied(s), lambda v: [v[0] + dx, v[1] + dy, v[2]])
     m["environment"]["transect"] = {"origin": [dx, dy]}
-    alike(first, ping(m), s, 1e-4, f"moved by {dx:g} m east, {dy:g} m north")
+    alike_in_the_mean(first, ping(m), s, 1e-4, f"moved by {dx:g} m east, {dy:g} m north")
 
 
 @law
 def offset_is_a_place(s, p):
     """A source and an array beside their platform are those of a platform beside it. Places round to 1e-12 m."""
     s = plain(s)
-    off = p("offset", st.sampled_from([[3.0, 0.0, 0.0], [0.0, -2.5, 0.0], [1.0, 2.0, 0.01]]))
+    off = p("offset", [[3.0, 0.0, 0.0], [0.0, -2.5, 0.0], [1.0, 2.0, 0.01]])
     s["platform"] = s["platform"][:1]
     s["array"] = s["array"][:1]
     s["array"][0]["platform"] = s["transmitter"]["platform"] = s["platform"][0]["name"]
@@ -152,7 +154,7 @@ def phone_is_itself(s, p):
     a = s["array"][0]
     ship = next(one for one in s["platform"] if one["name"] == a["platform"])
     at = ship["waypoints"][0]["position"] if "waypoints" in ship else ship["position"]
-    phone = p("phone", st.sampled_from([0, n - 1, n // 2]))
+    phone = p("phone", [0, n - 1, n // 2])
     phone = min(phone, n - 1)
     where = whole.phone_position[0, phone]
     alone = copied(s)
@@ -164,11 +166,7 @@ def phone_is_itself(s, p):
     size = float(np.max(np.linalg.norm(whole.phone_position[0] - np.mean(whole.phone_position[0], axis=0), axis=1)))
     reach = float(np.min(whole.arrivals["path_length"])) if len(whole.arrivals.get("path_length", ())) else 1.0
     share = 0.063 + 0.02 + size / max(reach, size, 1e-9)
-    only = ping(alone)
-    if abs(only.rate - whole.rate) > 1e-9 * whole.rate:
-        alone["pings"]["baseband_rate"] = whole.rate
-        only = ping(alone)
-    alike(whole, only, s, share, f"phone {phone} of {n}", phones=slice(phone, phone + 1))
+    alike(whole, ping(alone), s, share, f"phone {phone} of {n}", phones=slice(phone, phone + 1))
 
 
 @law
@@ -195,8 +193,8 @@ def continuous_in_place(s, p):
     s = one_place(stratified(still(plain(s))))
     first = ping(s)
     wave = 1500.0 / s["_hz"]
-    d = min(0.01 * wave, p("step", st.sampled_from([1e-3, 1.0, 1e-7])))
-    axis = p("axis", st.sampled_from([2, 0, 1]))
+    d = min(0.01 * wave, p("step", [1e-3, 1.0, 1e-7]))
+    axis = p("axis", [2, 0, 1])
     s2 = copied(s)
     z = s2["target"][0]["position"]
     z[axis] += d if axis < 2 or z[2] > s["platform"][0]["position"][2] else -d
@@ -212,7 +210,7 @@ def continuous_in_source(s, p):
     """As `continuous_in_place`, of the platform's depth: the legs' sums at the centre frequency."""
     s = one_place(stratified(still(plain(s))))
     first = need_leg(ping(s))
-    d = min(0.01 * 1500.0 / s["_hz"], p("step", st.sampled_from([1e-3, 1.0, 1e-7])))
+    d = min(0.01 * 1500.0 / s["_hz"], p("step", [1e-3, 1.0, 1e-7]))
     s2 = copied(s)
     s2["platform"][0]["position"][2] += d if s2["platform"][0]["position"][2] < s2["target"][0]["position"][2] else -d
     record = ping(s2)
