@@ -6,7 +6,7 @@
 #include <complex>
 #include <cstdio>
 #include <functional>
-#include <map>
+#include <memory>
 #include <optional>
 
 #include "core/error.h"
@@ -26,7 +26,7 @@
 namespace asdic::detail::study {
 namespace {
 
-/// What is listened for: the strongest path of a target.
+/// What is listened for: the loudest time of a target's echo, along its strongest path.
 struct Listened {
   double delay = 0.0, doppler = 1.0;
   Vec3 slowness = Vec3::Zero();  // [s/m]
@@ -43,45 +43,87 @@ const EchoPath* strongest(const PingRecord& record, int array, int target, int c
   return best;
 }
 
-/// The cells of an echo: those in which the filter answers to all pairs of the target's paths with
-/// at least a tenth of the most power that it answers with in any. \param cell  its length [s]
-/// \return numbers of cells after the strongest pair, rising; {0} if there is no path
-std::vector<std::ptrdiff_t> cells_of(const PingRecord& record, int array, int target,
-                                     const Pulse& pulse, double cell) {
-  constexpr double faintest = 0.1;
-  constexpr double reach = 8.0;  // cells from a pair, beyond which its answer is 4 % at most
-  const EchoPath* loudest = strongest(record, array, target, Return::all_channels);
-  if (loudest == nullptr) return {0};
-  const auto coherence = pulse_coherence(pulse);
-  std::map<std::ptrdiff_t, std::complex<double>> answers;
-  for (const EchoPath& echo : record.echoes) {
-    if (echo.array != array || echo.target != target ||
-        echo.received.channel != loudest->received.channel)
-      continue;
-    const double later = echo.received.delay - loudest->received.delay;
-    const std::complex<double> amplitude =
-        echo.received.amplitude *
-        std::polar(1.0, -2.0 * pi * std::fmod(pulse.centre_frequency() * later, 1.0));
-    const auto first = static_cast<std::ptrdiff_t>(std::ceil(later / cell - reach)),
-               last = static_cast<std::ptrdiff_t>(std::floor(later / cell + reach));
-    for (std::ptrdiff_t k = first; k <= last; ++k) {
-      const double after = static_cast<double>(k) * cell - later;
-      const std::complex<double> alike = (*coherence)(std::abs(after));
-      answers[k] += amplitude * (after < 0.0 ? std::conj(alike) : alike);
-    }
-  }
-  double most = 0.0;
-  for (const auto& [at, answer] : answers) most = std::max(most, std::norm(answer));
-  std::vector<std::ptrdiff_t> cells;
-  for (const auto& [at, answer] : answers)
-    if (std::norm(answer) >= faintest * most) cells.push_back(at);
-  return cells;
-}
-
 /// Length of a cell, 1/B, the matched filter's resolution [samples].
 std::ptrdiff_t cell_samples(const Pulse& pulse, double sample_rate) {
   return static_cast<std::ptrdiff_t>(std::ceil(sample_rate / noise_bandwidth(pulse)));
 }
+
+/// The same [s]
+double cell_duration(const Pulse& pulse, double sample_rate) {
+  return static_cast<double>(cell_samples(pulse, sample_rate)) / sample_rate;
+}
+
+/// The filter's answer to all pairs of a target's paths as they add up, without noise.
+class AnswerToPaths {
+ public:
+  /// \param cell  1/B, in which the filter's answer to a pair falls to nothing [s]
+  AnswerToPaths(const PingRecord& record, int array, int target, const Pulse& pulse, double cell)
+      : coherence_(pulse_coherence(pulse)), cell_(cell) {
+    const EchoPath* loudest = strongest(record, array, target, Return::all_channels);
+    if (loudest == nullptr) return;
+    for (const EchoPath& echo : record.echoes) {
+      if (echo.array != array || echo.target != target ||
+          echo.received.channel != loudest->received.channel)
+        continue;
+      const double later = echo.received.delay - loudest->received.delay;
+      const double cycles = std::fmod(pulse.centre_frequency() * later, 1.0);
+      pairs_.push_back({later, echo.received.amplitude * std::polar(1.0, -2.0 * pi * cycles)});
+    }
+    std::sort(pairs_.begin(), pairs_.end(),
+              [](const Pair& a, const Pair& b) { return a.later < b.later; });
+    find_loudest();
+  }
+  /// Time of the loudest answer after the strongest pair [s]
+  [[nodiscard]] double loudest() const noexcept { return loudest_; }
+  /// Cells with at least a fifth of the loudest one's power: numbers of cells after the loudest
+  /// answer, rising. {0} if there is no path.
+  [[nodiscard]] std::vector<std::ptrdiff_t> cells() const {
+    constexpr double faintest = 0.2;
+    if (pairs_.empty()) return {0};
+    std::vector<std::ptrdiff_t> found;
+    const auto first = static_cast<std::ptrdiff_t>(
+                   std::floor((pairs_.front().later - loudest_) / cell_ - 1.0)),
+               last = static_cast<std::ptrdiff_t>(
+                   std::ceil((pairs_.back().later - loudest_) / cell_ + 1.0));
+    for (std::ptrdiff_t k = first; k <= last; ++k)
+      if (power(loudest_ + static_cast<double>(k) * cell_) >= faintest * most_) found.push_back(k);
+    return found;
+  }
+
+ private:
+  struct Pair {
+    double later;  // than the strongest one [s]
+    std::complex<double> pressure;
+  };
+
+  /// |Σ A·e^{−iωτ}·R(t − τ)|²
+  [[nodiscard]] double power(double t) const {
+    constexpr double reach = 8.0;  // cells from a pair, beyond which its answer is 4 % at most
+    std::complex<double> sum = 0.0;
+    for (auto pair = std::lower_bound(pairs_.begin(), pairs_.end(), t - reach * cell_,
+                                      [](const Pair&a, double from) { return a.later < from; });
+         pair != pairs_.end() && pair->later <= t + reach * cell_; ++pair) {
+      const std::complex<double> alike = (*coherence_)(std::abs(t - pair->later));
+      sum += pair->pressure * (t < pair->later ? std::conj(alike) : alike);
+    }
+    return std::norm(sum);
+  }
+  void find_loudest() {
+    constexpr double steps = 8.0;  // in a cell
+    const double step = cell_ / steps;
+    const auto first = static_cast<std::ptrdiff_t>(std::floor(pairs_.front().later / step - steps)),
+               last = static_cast<std::ptrdiff_t>(std::ceil(pairs_.back().later / step + steps));
+    for (std::ptrdiff_t k = first; k <= last; ++k)
+      if (const double here = power(static_cast<double>(k) * step); here > most_) {
+        most_ = here;
+        loudest_ = static_cast<double>(k) * step;
+      }
+  }
+
+  std::shared_ptr<const PulseCoherence> coherence_;
+  double cell_, loudest_ = 0.0, most_ = 0.0;
+  std::vector<Pair> pairs_;  // of the target's paths, by their delay
+};
 
 /// u = −ln P of the highest of n independent cells, where P is the probability that without an echo
 /// at least one of them is as high. \param level  the highest cell's own u
@@ -94,7 +136,8 @@ double level_among(double level, std::size_t n) {
 }
 
 Listened listened(const PingSimulator& simulator, const PingRecord& record,
-                  const MatchedFilterPlan& plan, int array, int target, const Vec3& reference) {
+                  const MatchedFilterPlan& plan, int array, int target, const Vec3& reference,
+                  const AnswerToPaths& answer) {
   const Scenario& scenario = simulator.scenario();
   const std::size_t first = first_channel(scenario, array);
   const std::size_t phones = scenario.arrays[static_cast<std::size_t>(array)].phones.size();
@@ -102,7 +145,7 @@ Listened listened(const PingSimulator& simulator, const PingRecord& record,
   Vec3 slowness = Vec3::Zero();
   const EchoPath* loudest = strongest(record, array, target, Return::all_channels);
   if (loudest != nullptr) {
-    all.delay = loudest->received.delay;
+    all.delay = loudest->received.delay + answer.loudest();
     all.doppler = loudest->received.doppler;
     slowness = loudest->received.slowness;
   } else {
@@ -117,7 +160,7 @@ Listened listened(const PingSimulator& simulator, const PingRecord& record,
     double delay = all.delay + slowness.dot(record.phones[first + n] - reference);
     if (loudest != nullptr && loudest->received.channel != Return::all_channels)
       if (const EchoPath* own = strongest(record, array, target, static_cast<int>(n)))
-        delay = own->received.delay +  // a path of each phone's own, told at the reference point
+        delay = own->received.delay + answer.loudest() +  // of each phone's own, at the reference
                 own->received.slowness.dot(record.phones[first + n] - reference);
     all.phones.push_back({first + n, delay});
   }
@@ -274,7 +317,8 @@ class TargetFilter {
         whole_(recording_of(simulator.scenario())),
         pulse_(simulator.pulse(record.transmitter)),
         reference_(simulator.geometry(record.ping).reference_place(array).position),
-        echo_(listened(simulator, record, plan, array, target, reference_)),
+        paths_(record, array, target, pulse_, cell_duration(pulse_, whole_.sample_rate)),
+        echo_(listened(simulator, record, plan, array, target, reference_, paths_)),
         filter_({.sample_rate = whole_.sample_rate,
                  .start = whole_.start,
                  .samples = whole_.samples,
@@ -289,8 +333,7 @@ class TargetFilter {
                         noise_density(simulator.scenario().noise, pulse_.centre_frequency()))
                   : 0.0),
         cell_(cell_samples(pulse_, whole_.sample_rate)),
-        spread_(cells_of(record, array, target, pulse_,
-                         static_cast<double>(cell_) / whole_.sample_rate)) {}
+        spread_(paths_.cells()) {}
   TargetFilter(const TargetFilter&) = delete;
   TargetFilter& operator=(const TargetFilter&) = delete;
 
@@ -419,12 +462,13 @@ class TargetFilter {
   Recording whole_;
   const Pulse& pulse_;
   Vec3 reference_;  // of the array when the ping is sent
+  AnswerToPaths paths_;
   Listened echo_;
   MatchedFilterAt filter_;
   double duration_;  // of the pulse as it is received [s]
   Busy busy_, near_;
   std::ptrdiff_t cell_;                 // [samples]
-  std::vector<std::ptrdiff_t> spread_;  // the echo's cells, after the strongest pair [cells]
+  std::vector<std::ptrdiff_t> spread_;  // the echo's cells, after its loudest time [cells]
 };
 
 /// u = −ln P of one cell, P the probability of as high an answer in even Rayleigh noise.
@@ -558,8 +602,8 @@ FilterAnswer filter_answer(const PingSimulator& simulator, const PingRecord& rec
 int cells_of_echo(const PingSimulator& simulator, const PingRecord& record, int array, int target) {
   const double rate = recording_of(simulator.scenario()).sample_rate;
   const Pulse& pulse = simulator.pulse(record.transmitter);
-  const double cell = static_cast<double>(cell_samples(pulse, rate)) / rate;
-  return static_cast<int>(cells_of(record, array, target, pulse, cell).size());
+  const AnswerToPaths paths(record, array, target, pulse, cell_duration(pulse, rate));
+  return static_cast<int>(paths.cells().size());
 }
 
 std::vector<FreeCell> free_cells(const PingSimulator& simulator, const PingRecord& record,
