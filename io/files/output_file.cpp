@@ -146,11 +146,15 @@ OutputFile::~OutputFile() {
 const fs::path& OutputFile::part() {
   while (part_.empty()) {
     fs::path name = target_.string() + '.' + random_mark() + std::string(ending);
+    unfinished_.emplace(name);  // before the file is there, since a signal may come at any time
     const int file = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0666);
-    if (file < 0 && errno == EEXIST) continue;
-    if (file < 0) throw RunError(name.string() + ": " + std::strerror(errno));
+    if (file < 0) {
+      const int error = errno;
+      unfinished_.reset();
+      if (error == EEXIST) continue;
+      throw RunError(name.string() + ": " + std::strerror(error));
+    }
     close(file);
-    unfinished_.emplace(name);
     part_ = std::move(name);
   }
   return part_;
@@ -182,7 +186,7 @@ void OutputFile::finish() {
   part_.clear();
   unfinished_.reset();
   synchronise(folder_of(target_));
-  if (!lock_.alone()) return;  // a part may be of a run that goes on
+  if (!lock_.alone()) return;  // other runs may be writing a part
   for (const fs::path& old : parts_of(target_))
     if (rules_.worth == nullptr || !rules_.worth(old)) fs::remove(old, error);
 }

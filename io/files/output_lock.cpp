@@ -106,6 +106,7 @@ OutputLock::OutputLock(const std::filesystem::path& target) : path_(target.strin
           {.where = path_.string(),
            .got = "a file that asdic did not write",
            .expected = "that name to be free while " + target.filename().string() + " is written"});
+    unfinished_.emplace(path_);
     const std::string text = std::string(mark) + who_am_i() + '\n';
     if (ftruncate(lock.file, 0) != 0 ||
         pwrite(lock.file, text.data(), text.size(), 0) != static_cast<ssize_t>(text.size())) {
@@ -113,7 +114,6 @@ OutputLock::OutputLock(const std::filesystem::path& target) : path_(target.strin
       unlink(path_.c_str());
       throw RunError(path_.string() + ": " + std::strerror(error));
     }
-    unfinished_.emplace(path_);
     file_ = lock.release();
     return;
   }
