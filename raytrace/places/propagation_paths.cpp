@@ -312,6 +312,8 @@ Arrivals PropagationPaths::followed(std::span<const Arrival> known, const Vec3& 
       lost.push_back(&path);
       continue;
     }
+    // Waves need all rays of their term: a part of the leg would have the amplitudes of rays.
+    if (!same && layered_ && limits.diffraction) return find(from, to, frequency, limits);
     if (!same) return search(from, to, frequency, limits_around(known, limits));
     found.push_back(std::move(*same));
   }

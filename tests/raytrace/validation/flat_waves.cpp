@@ -58,6 +58,38 @@ TEST(FlatWaves, AboutTheAxisOfAProfile) {
     }
 }
 
+// Paths followed two wavelengths further have waves' amplitudes, although some of their rays are
+// no more found beside where they were. All together are the paths found there. Such legs had rays'
+// amplitudes, and their sum differed by half.
+TEST(FlatWaves, PathsThatAreFollowedHaveThem) {
+  const std::vector<double> depth = {0, 15, 30, 50, 80, 120, 200, 400, 800, 1500, 2600},
+                            speed = {1536, 1535, 1525,   1515,   1510.5, 1509,
+                                     1510, 1513, 1519.2, 1530.5, 1548.5};
+  Environment ocean{.water = SoundSpeedProfile::table(depth, speed, Interpolation::pchip)};
+  ocean.bottom = {.depth = 2600.0,
+                  .material = FluidHalfSpace{
+                      .speed = 1550.0, .density = 1500.0, .attenuation_db_per_wavelength = 0.1}};
+  const PropagationPaths paths(ocean, {});
+  const PathLimits limits{.max_surface_bounces = 3, .max_bottom_bounces = 3, .diffraction = true};
+  const double f = 200.0;
+  const auto pressure = [&](const Arrivals& leg) {
+    std::complex<double> sum = 0.0;
+    for (const Arrival& path : leg)
+      sum += path.amplitude * std::polar(1.0, -2.0 * pi * std::fmod(f * path.delay, 1.0));
+    return sum;
+  };
+  const Vec3 source(0.0, 0.0, 300.0);
+  const Arrivals known = paths.find(source, {80000.0, 0.0, 150.0}, f, limits);
+  for (double range = 80004.0; range < 80030.0; range += 4.0) {
+    const Vec3 place(range, 0.0, 150.0);
+    const Arrivals followed = paths.follow(known, source, place, f, limits),
+                   found = paths.find(source, place, f, limits);
+    double energy = 0.0;
+    for (const Arrival& path : found) energy += std::norm(path.amplitude);
+    EXPECT_LT(std::abs(pressure(followed) - pressure(found)), 0.1 * std::sqrt(energy)) << range;
+  }
+}
+
 // A smooth channel over a rigid floor. With few bounces the energy is at most that of the modes
 // that stay in the water, with many bounces that of all modes. It was 64 and 157 dB higher.
 TEST(FlatWaves, AboutTheAxisOfASpline) {
