@@ -42,7 +42,8 @@ enum class Kept : std::uint64_t {
   covariance_spectra,
   reverberation_streams,
   noise_factors,
-  mean_reverberation
+  mean_reverberation,
+  branch_waves
 };
 
 /// All the numbers that decide a result, bit for bit: best made of what the function that finds it

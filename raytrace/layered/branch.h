@@ -1,5 +1,6 @@
 #pragma once
 #include "raytrace/layered/column.h"
+#include "raytrace/ocean/arrivals.h"
 
 namespace asdic::detail {
 
@@ -18,6 +19,17 @@ struct Branch {
     return vertices == 0 ? starts_up : (vertices % 2 == 1) != starts_up;
   }
 };
+
+/// The history of a ray that was found.
+[[nodiscard]] inline Branch branch_of(const Arrival& ray) noexcept {
+  return {.starts_up = ray.launch_elevation > 0.0,
+          .vertices = ray.surface_bounces + ray.bottom_bounces + ray.upper_turns + ray.lower_turns};
+}
+
+/// The history of the same ray from its other end.
+[[nodiscard]] inline Branch reversed(const Branch& branch) noexcept {
+  return {.starts_up = !branch.arrives_upward(), .vertices = branch.vertices};
+}
 
 /// How often a branch passes the three pieces of the column.
 struct BranchWeights {

@@ -106,6 +106,11 @@ void add_to(ExactKey& key, const CycleNeed& need) {
   key.add_all(source_depth, receiver_depth, frequency, furthest, without_surface, without_bottom);
 }
 
+void add_to(ExactKey& key, const BranchNeed& need) {
+  const auto& [upper, lower, frequency, furthest, steepest] = need;  // every member by name
+  key.add_all(upper, lower, frequency, furthest, steepest);
+}
+
 void add_to(ExactKey& key, const PathLimits& limits) {
   // Every member by name: one more does not compile until it is here.
   const auto& [surface_bounces, bottom_bounces, launch_angle, vertices, diffraction, faintest,
@@ -230,10 +235,14 @@ Arrivals PropagationPaths::search_plane(const Vec3& from, const Vec3& to, double
     Arrivals found = solver->find(from.z(), to.z(), range, frequency, limits);
     if (limits.diffraction) {
       put_caustics(*solver, from.z(), to.z(), range, frequency, limits, found);
-      put_waves(*solver, from.z(), to.z(), range, frequency, limits, found,
-                [&](const CycleNeed& need, const CyclesMaker& make) {
-                  return memory_->remember(key(Kept::cycle_waves, need), make);
-                });
+      put_waves(
+          *solver, from.z(), to.z(), range, frequency, limits, found,
+          [&](const CycleNeed& need, const CyclesMaker& make) {
+            return memory_->remember(key(Kept::cycle_waves, need), make);
+          },
+          [&](const BranchNeed& need, const BranchMaker& make) {
+            return memory_->remember(key(Kept::branch_waves, need), make);
+          });
       if (rough) put_roughness(along_.environment(), frequency, limits.faintest, found);
       const OceanMemory kept{*memory_, identity_};
       auto more = diffracted_arrival(along_.environment(), from.z(), to.z(), range, frequency,

@@ -11,6 +11,7 @@
 #include "raytrace/waves/diffraction.h"
 #include "raytrace/waves/make_wave.h"
 #include "raytrace/waves/ray_errors.h"
+#include "raytrace/waves/waterborne.h"
 
 namespace asdic::detail {
 namespace {
@@ -20,11 +21,6 @@ using Complex = std::complex<double>;
 constexpr double least_share = 1e-8;    // of a wavenumber in the terms
 constexpr double flattest_zones = 0.1;  // of the slope that a wave of one Fresnel zone notices
 constexpr double fade_radians = 100.0;  // over which flat waves fade, at the furthest range
-
-/// f·g′ − f′·g
-Complex wronskian(Complex f, Complex f_slope, Complex g, Complex g_slope) {
-  return f * g_slope - f_slope * g;
-}
 
 /// f·g, each with its exponent: alone one may be too small for a number and the other too great.
 /// \param reference  of the exponents' sum
@@ -134,20 +130,17 @@ constexpr double least_error = 0.02;      // of an amplitude, that is reckoned w
 constexpr double tolerable_error = 0.01;  // of the whole, below which rays are right
 constexpr double least_change = 1e-3;     // of the whole, below which a ray stays one
 constexpr double least_weight = 1e-3;     // of a ray in the window of wavenumbers
+constexpr double resolved = 0.99;         // of a wavenumber that is summed history by history
+constexpr double of_a_wave = 0.1;         // what its amplitude may be off by at most
 
-Branch branch_of(const Arrival& ray) {
-  return {.starts_up = ray.launch_elevation > 0.0,
-          .vertices = ray.surface_bounces + ray.bottom_bounces + ray.upper_turns + ray.lower_turns};
-}
-
-/// The history of the same ray from its other end.
-Branch reversed(const Branch& branch) {
-  return {.starts_up = !branch.arrives_upward(), .vertices = branch.vertices};
+/// By the delay of a ray.
+Complex turned(const Arrival& ray, double frequency) {
+  return std::polar(1.0, -2.0 * pi * std::fmod(frequency * ray.delay, 1.0));
 }
 
 /// Of a ray, at the receiver.
 Complex pressure(const Arrival& ray, double frequency) {
-  return ray.amplitude * std::polar(1.0, -2.0 * pi * std::fmod(frequency * ray.delay, 1.0));
+  return ray.amplitude * turned(ray, frequency);
 }
 
 /// The same ocean whose boundaries return nothing.
@@ -192,45 +185,34 @@ void share(const WaveGroup& group, const Arrivals& found, const std::vector<RayE
   }
   for (std::size_t n = 0; n < group.rays.size(); ++n) {
     const std::size_t i = group.rays[n];
-    const double turns = std::fmod(frequency * found[i].delay, 1.0);
-    amplitudes[i] += doubt[n] / all * lacking * std::polar(1.0, 2.0 * pi * turns);
+    amplitudes[i] += doubt[n] / all * lacking * std::conj(turned(found[i], frequency));
   }
 }
 
-/// A range that many have in common, up to a fifth further.
-double furthest_of(double range) { return std::exp2(std::ceil(4.0 * std::log2(range)) / 4.0); }
+/// What is found between two places.
+struct FoundLeg {
+  const Environment& ocean;
+  double source_depth, receiver_depth, range, frequency;
+  const PathLimits& limits;
+  const Arrivals& found;
 
-bool of_one_speed(const Environment& ocean) {
-  const auto& water = ocean.water;
-  const double c = water.at(ocean.surface.depth).c;
-  bool same = water.at(ocean.bottom.depth).c == c;
-  for (std::size_t i = 0; i < water.intervals(); ++i)
-    same = same && water.at(water.law(i).z0).c == c;
-  return same;
-}
-
-}  // namespace
-
-void put_waves(const EigenraySolver& solver, double source_depth, double receiver_depth,
-               double range, double frequency, const PathLimits& limits, Arrivals& found,
-               const CyclesKeeper& keeper) {
-  const Environment& ocean = solver.environment();
-  if (!(range > 0.0) || of_one_speed(ocean)) return;
-  const std::vector<RayError> errors =
-      ray_errors(solver, source_depth, receiver_depth, frequency, limits, found);
-  double energy = 0.0, wrong = 0.0;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    const double error = std::min(1.0, errors[i].focusing + errors[i].turning);
-    energy += std::norm(found[i].amplitude);
-    wrong += std::norm(found[i].amplitude) * error * error;
+  [[nodiscard]] double omega() const { return 2.0 * pi * frequency; }
+  [[nodiscard]] double upper() const { return std::min(source_depth, receiver_depth); }
+  [[nodiscard]] double lower() const { return std::max(source_depth, receiver_depth); }
+  /// The history of a ray from the upper end to the lower one.
+  [[nodiscard]] Branch from_upper(const Arrival& ray) const {
+    const Branch branch = branch_of(ray);
+    return source_depth <= receiver_depth ? branch : reversed(branch);
   }
-  if (!(wrong > tolerable_error * tolerable_error * energy)) return;
+};
 
+/// Groups by cycles.
+std::vector<WaveGroup> cycle_groups(const FoundLeg& leg, const CyclesKeeper& keeper) {
+  const auto& [ocean, source_depth, receiver_depth, range, frequency, limits, found] = leg;
   // Of oceans whose boundaries return nothing where rays must not touch them so often; received at
   // the lower end, so that the way there and the way back have the same.
-  const double furthest = furthest_of(range);
-  const double upper = std::min(source_depth, receiver_depth),
-               lower = std::max(source_depth, receiver_depth);
+  const double furthest = furthest_in_step(range);
+  const double upper = leg.upper(), lower = leg.lower();
   const auto cycles = [&](bool surface, bool bottom) -> std::shared_ptr<const CycleWaves> {
     const auto make = [&] {
       return std::make_shared<CycleWaves>(without(ocean, surface, bottom), frequency, upper, lower,
@@ -241,15 +223,12 @@ void put_waves(const EigenraySolver& solver, double source_depth, double receive
   const bool no_surface = limits.max_surface_bounces == 0,
              no_bottom = limits.max_bottom_bounces == 0;
   const auto plain = cycles(no_surface, no_bottom);
-  const double omega = 2.0 * pi * frequency;
+  const double omega = leg.omega();
   const double steepest =
       omega * std::cos(limits.max_launch_angle) / ocean.water.at(source_depth).c;
-  if (!plain->affordable() || steepest > plain->window().begin) return;
+  if (!plain->affordable() || steepest > plain->window().begin) return {};
 
-  const auto term_of = [&](const Arrival& ray) {
-    const Branch branch = branch_of(ray);
-    return plain->term_of(source_depth <= receiver_depth ? branch : reversed(branch));
-  };
+  const auto term_of = [&](const Arrival& ray) { return plain->term_of(leg.from_upper(ray)); };
   int last = -1;
   bool waterborne = false;
   std::vector<double> weights;  // [found] of their wavenumbers in the window
@@ -260,7 +239,7 @@ void put_waves(const EigenraySolver& solver, double source_depth, double receive
     if (weights.back() == 0.0) continue;
     last = std::max(last, term_of(ray));
   }
-  if (last < 0) return;
+  if (last < 0) return {};
   const int flat_cycles = plain->flat_cycles(range);
   const std::size_t count = std::size_t(std::max(last, flat_cycles)) + 2;
   std::map<std::pair<bool, bool>, std::vector<Complex>> known;
@@ -307,13 +286,97 @@ void put_waves(const EigenraySolver& solver, double source_depth, double receive
   const WaveGroup flat = group_of(count, flat_cycles);
   hand_over(flat, flat_cycles);
   for (const auto& [term, here] : groups) hand_over(here, term);
+  std::vector<WaveGroup> all{flat};
+  for (auto& [term, here] : groups) all.push_back(std::move(here));
+  return all;
+}
+
+/// Amplitudes of rays by the waves of their own histories, where those are resolved.
+/// \param errors  of reflection: what a history lacks is shared by them, and they are mended
+std::vector<Complex> branch_amplitudes(const FoundLeg& leg, const BranchWaves& waves,
+                                       std::vector<RayError>& errors) {
+  std::map<std::pair<int, int>, WaveGroup> groups;
+  int cycles = 0;
   std::vector<Complex> amplitudes;
-  for (const Arrival& ray : found) amplitudes.push_back(ray.amplitude);
-  share(flat, found, errors, frequency, amplitudes);
-  for (const auto& [term, here] : groups) share(here, found, errors, frequency, amplitudes);
+  const double k = leg.omega() / leg.ocean.water.at(leg.source_depth).c;
+  for (std::size_t i = 0; i < leg.found.size(); ++i) {
+    const Arrival& ray = leg.found[i];
+    amplitudes.push_back(ray.amplitude);
+    const double wavenumber = leg.omega() * ray.horizontal_slowness, zone = fresnel_zone(ray, k);
+    if (ray.kind == ArrivalKind::diffracted || !(std::norm(ray.amplitude) > 0.0) ||
+        !(waves.share(wavenumber - zone) > resolved && waves.share(wavenumber + zone) > resolved))
+      continue;
+    const auto [kind, n] =
+        waves.place_of(leg.from_upper(ray), wavenumber, ray.upper_turns > 0, ray.lower_turns > 0);
+    groups[{kind, n}].add(i, waves.share(wavenumber), pressure(ray, leg.frequency));
+    cycles = std::max(cycles, n);
+  }
+  const auto pressures = waves.pressures(leg.range, cycles);
+  for (const auto& [place, group] : groups) {
+    const Complex lacking =
+        group.lacking + pressures[std::size_t(place.first)][std::size_t(place.second)];
+    double all = 0.0;
+    for (const std::size_t i : group.rays)
+      all += errors[i].reflecting * errors[i].reflecting * std::norm(leg.found[i].amplitude);
+    for (const std::size_t i : group.rays) {
+      if (!(errors[i].reflecting > 0.0)) continue;
+      const double share =
+          errors[i].reflecting * errors[i].reflecting * std::norm(leg.found[i].amplitude) / all;
+      amplitudes[i] += share * lacking * std::conj(turned(leg.found[i], leg.frequency));
+      errors[i].focusing = std::min(errors[i].focusing, of_a_wave);
+    }
+  }
+  return amplitudes;
+}
+
+/// Gives rays other amplitudes, but for those that hardly change. \param energy  of all
+void replace(const std::vector<Complex>& amplitudes, double energy, Arrivals& found) {
   for (std::size_t i = 0; i < found.size(); ++i)
     if (std::norm(amplitudes[i] - found[i].amplitude) > least_change * least_change * energy)
       make_wave(found[i], amplitudes[i] / found[i].amplitude);
+}
+
+}  // namespace
+
+void put_waves(const EigenraySolver& solver, double source_depth, double receiver_depth,
+               double range, double frequency, const PathLimits& limits, Arrivals& found,
+               const CyclesKeeper& keeper, const BranchKeeper& branches) {
+  const Environment& ocean = solver.environment();
+  if (!(range > 0.0)) return;
+  std::vector<RayError> errors =
+      ray_errors(solver, source_depth, receiver_depth, frequency, limits, found);
+  double energy = 0.0, wrong = 0.0, reflected = 0.0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const double error = std::min(1.0, errors[i].focusing + errors[i].turning),
+                 power = std::norm(found[i].amplitude);
+    energy += power;
+    wrong += power * error * error;
+    reflected += power * errors[i].reflecting * errors[i].reflecting;
+  }
+  const bool by_cycles = wrong > tolerable_error * tolerable_error * energy;
+  // Up to twice that error waves of each history fade in: nothing jumps where they begin to do.
+  const double more = std::sqrt(reflected / energy) / tolerable_error - 1.0,
+               x = more > 0.0 ? std::min(more, 1.0) : 0.0, faded = x * x * (3.0 - 2.0 * x);
+  if (!by_cycles && !(faded > 0.0)) return;
+
+  const FoundLeg leg{ocean, source_depth, receiver_depth, range, frequency, limits, found};
+  if (faded > 0.0) {
+    const BranchNeed need = branch_need(ocean, leg.upper(), leg.lower(), range, frequency, found);
+    const auto make = [&] { return std::make_shared<BranchWaves>(ocean, need); };
+    const std::shared_ptr<const BranchWaves> waves = branches ? branches(need, make) : make();
+    if (waves->affordable()) {
+      std::vector<Complex> amplitudes = branch_amplitudes(leg, *waves, errors);
+      for (std::size_t i = 0; i < found.size(); ++i)
+        amplitudes[i] = (1.0 - faded) * found[i].amplitude + faded * amplitudes[i];
+      replace(amplitudes, energy, found);
+    }
+  }
+  if (!by_cycles) return;
+  std::vector<Complex> amplitudes;
+  for (const Arrival& ray : found) amplitudes.push_back(ray.amplitude);
+  for (const WaveGroup& group : cycle_groups(leg, keeper))
+    share(group, found, errors, frequency, amplitudes);
+  replace(amplitudes, energy, found);
 }
 
 }  // namespace asdic::detail

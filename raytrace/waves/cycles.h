@@ -7,13 +7,10 @@
 #include "raytrace/layered/branch.h"
 #include "raytrace/ocean/arrivals.h"
 #include "raytrace/paths/eigenrays.h"
+#include "raytrace/waves/branch_waves.h"
 #include "raytrace/waves/water_window.h"
 
 namespace asdic::detail {
-
-/// Layers times wavenumbers of one pair of depths at one frequency: some tenths of a second of one
-/// core. A target under way asks for it every few wavelengths.
-inline constexpr double most_cycle_steps = 5e5;
 
 /// The field of one range by the number of cycles, turn above and turn below, that its waves have
 /// gone through. With u, the solution that obeys the surface, and v, that obeys the bottom, as a
@@ -84,16 +81,18 @@ using CyclesKeeper =
     std::function<std::shared_ptr<const CycleWaves>(const CycleNeed&, const CyclesMaker&)>;
 
 /// Gives rays that ray theory gets wrong the amplitudes of waves: those at a focus, a cusp or the
-/// end of their family, and those that turn beside a corner of the profile. What a term of
-/// CycleWaves has more than its rays is shared by them, most by those whose amplitude is least sure
-/// (ray_errors.h): their sum is the waves' field. They are of kind `caustic`, each with its own
+/// end of their family, those that turn beside a corner of the profile, and those that boundaries
+/// reflect otherwise than plane waves. What a term of CycleWaves has more than its rays is shared
+/// by them, most by those whose amplitude is least sure (ray_errors.h): their sum is the waves'
+/// field. Where reflection is what is wrong, each ray that is not horizontal at an end has the
+/// waves of its own history (BranchWaves) before. All are of kind `caustic` then, each with its own
 /// delay and angles. Rays whose amplitude changes by less than 0.1 % of the whole stay as they are,
-/// and all do where their errors would be 1 % of the whole at most, in water of one speed, and
-/// where it would take more than `most_cycle_steps`. What a `diffracted` arrival holds is
-/// left to it. \param solver  layered()   \param found  all arrivals of these places within the
-/// limits \param keeper  none: made anew   \throws Interrupted
+/// and all do where their errors would be 1 % of the whole at most, and where it would take more
+/// than `most_cycle_steps`. What a `diffracted` arrival holds is left to it.
+/// \param solver  layered()   \param found  all arrivals of these places within the limits
+/// \param keeper, branches  none: made anew   \throws Interrupted
 void put_waves(const EigenraySolver& solver, double source_depth, double receiver_depth,
                double range, double frequency, const PathLimits& limits, Arrivals& found,
-               const CyclesKeeper& keeper = {});
+               const CyclesKeeper& keeper = {}, const BranchKeeper& branches = {});
 
 }  // namespace asdic::detail

@@ -36,6 +36,14 @@ struct TravellingWaves {
 /// not 0 [1/m³]
 [[nodiscard]] TravellingWaves travelling_waves(std::complex<double> q, double slope) noexcept;
 
+/// f·g′ − f′·g, of two solutions with their derivatives.
+[[nodiscard]] inline std::complex<double> wronskian(std::complex<double> f,
+                                                    std::complex<double> f_slope,
+                                                    std::complex<double> g,
+                                                    std::complex<double> g_slope) noexcept {
+  return f * g_slope - f_slope * g;
+}
+
 /// √q with Im ≤ 0: e^{−iwz} goes down, or dies out downwards.
 [[nodiscard]] std::complex<double> vertical_wavenumber(std::complex<double> q) noexcept;
 

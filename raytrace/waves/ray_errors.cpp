@@ -1,6 +1,7 @@
 #include "raytrace/waves/ray_errors.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/units.h"
@@ -9,9 +10,12 @@
 namespace asdic::detail {
 namespace {
 
-constexpr double faintest_focus = 1e-4;  // of the rays' energy
-constexpr double most_of_a_turn = 1.5;   // [rad]
-constexpr double of_a_caustic = 0.1;     // what a pair's amplitudes may be off by at most
+using Complex = std::complex<double>;
+
+constexpr double faintest_focus = 1e-4;        // of the rays' energy
+constexpr double most_of_a_turn = 1.5;         // [rad]
+constexpr double widest_turn = radians(10.0);  // about a ray that is looked at
+constexpr double of_a_caustic = 0.1;           // what a pair's amplitudes may be off by at most
 
 /// A depth at which the gradient of the speed jumps.
 struct Corner {
@@ -37,7 +41,72 @@ std::vector<Corner> corners_of(const Environment& ocean, bool boundaries) {
   return corners;
 }
 
+/// z^n, n ≥ 0.
+Complex all_bounces(Complex z, int n) noexcept {
+  Complex result = 1.0;
+  for (; n > 0; n >>= 1, z *= z)
+    if ((n & 1) != 0) result *= z;
+  return result;
+}
+
+/// A boundary, for rays of a slowness.
+struct FlatWall {
+  const BoundaryMaterial& material;
+  WaterAtBoundary water;
+
+  FlatWall(const Environment& ocean, const Boundary& boundary, double frequency)
+      : material(boundary.material),
+        water{.speed = ocean.water.at(boundary.depth).c,
+              .density = ocean.water_density.at(boundary.depth),
+              .frequency = frequency} {}
+
+  /// Of so many bounces, at an angle; below the horizontal as a line goes on through it.
+  [[nodiscard]] Complex at(double grazing, int bounces) const {
+    const auto r = [&](double angle) {
+      return all_bounces(reflection_coefficient(material, std::min(angle, 0.5 * pi), water),
+                         bounces);
+    };
+    return grazing < 0.0 ? 2.0 * r(0.0) - r(-grazing) : r(grazing);
+  }
+  [[nodiscard]] double grazing_of(double slowness) const {
+    return std::acos(std::min(1.0, slowness * water.speed));
+  }
+};
+
+/// F of a wall at either side of a ray, and at it. \param zone  of ξ [1/m]
+std::array<Complex, 3> beside(const FlatWall& wall, const Arrival& ray, int bounces, double zone) {
+  if (bounces == 0) return {1.0, 1.0, 1.0};
+  const double angle = wall.grazing_of(ray.horizontal_slowness);
+  const double turn = zone * wall.water.speed / (2.0 * pi * wall.water.frequency * std::sin(angle));
+  const double step = turn < widest_turn ? turn : widest_turn;
+  return {wall.at(angle + step, bounces), wall.at(angle - step, bounces), wall.at(angle, bounces)};
+}
+
 }  // namespace
+
+double fresnel_zone(const Arrival& ray, double wavenumber) noexcept {
+  const double sines = std::abs(std::sin(ray.launch_elevation) * std::sin(ray.arrival_elevation));
+  return std::sqrt(2.0 * wavenumber * sines / std::max(std::abs(ray.q), 1e-9));
+}
+
+std::vector<double> reflection_errors(const Environment& ocean, double source_depth,
+                                      double frequency, const Arrivals& rays) {
+  constexpr double most = 4.0;  // of the difference: any phases
+  const FlatWall surface(ocean, ocean.surface, frequency), bottom(ocean, ocean.bottom, frequency);
+  const double k = 2.0 * pi * frequency / ocean.water.at(source_depth).c;
+  std::vector<double> errors;
+  for (const Arrival& ray : rays) {
+    errors.push_back(0.0);
+    const bool judged = ray.kind != ArrivalKind::diffracted && std::norm(ray.amplitude) > 0.0;
+    if (!judged || ray.surface_bounces + ray.bottom_bounces == 0) continue;
+    const double zone = fresnel_zone(ray, k);
+    const auto s = beside(surface, ray, ray.surface_bounces, zone),
+               b = beside(bottom, ray, ray.bottom_bounces, zone);
+    const double bend = std::abs(s[0] * b[0] + s[1] * b[1] - 2.0 * s[2] * b[2]);
+    errors.back() = 0.25 * std::min(bend, most) / std::abs(s[2] * b[2]);
+  }
+  return errors;
+}
 
 std::vector<double> corner_errors(const Environment& ocean, double frequency, const Arrivals& rays,
                                   bool boundaries) {
@@ -66,11 +135,14 @@ std::vector<RayError> ray_errors(const EigenraySolver& solver, double source_dep
   const std::vector<double> focusing = focusing_errors(solver, source_depth, receiver_depth,
                                                        frequency, limits, rays, faintest_focus);
   const std::vector<double> turning = corner_errors(solver.environment(), frequency, rays, true);
+  const std::vector<double> reflecting =
+      reflection_errors(solver.environment(), source_depth, frequency, rays);
   std::vector<RayError> errors;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const bool mended = rays[i].kind == ArrivalKind::caustic;
     errors.push_back({.focusing = mended ? std::min(focusing[i], of_a_caustic) : focusing[i],
-                      .turning = turning[i]});
+                      .turning = turning[i],
+                      .reflecting = reflecting[i]});
   }
   return errors;
 }

@@ -14,10 +14,23 @@ namespace asdic::detail {
 [[nodiscard]] std::vector<double> corner_errors(const Environment& ocean, double frequency,
                                                 const Arrivals& rays, bool boundaries);
 
+/// The wavenumbers about a ray's that make its Fresnel zone, (2/r′)^{1/2} with r(ξ) the range of
+/// rays [1/m]. \param wavenumber  of the source's depth [1/m]
+[[nodiscard]] double fresnel_zone(const Arrival& ray, double wavenumber) noexcept;
+
+/// How far what boundaries reflect as spherical waves differs from what they reflect as plane ones.
+/// With the product F of a ray's reflections over the wavenumber ξ, and r(ξ) the range of rays, the
+/// next order of stationary phase is ½F″/r′: here by differences over fresnel_zone(), so that a
+/// critical angle nearby counts by what it does there. More than the ray itself where it is faint.
+/// \param ocean  is_layered(); its roughness does not count   \return [rays] of the amplitude
+[[nodiscard]] std::vector<double> reflection_errors(const Environment& ocean, double source_depth,
+                                                    double frequency, const Arrivals& rays);
+
 /// How far the amplitude of a ray may be off, as a share of it.
 struct RayError {
-  double focusing = 0.0;  ///< in size and phase: focusing_errors()
-  double turning = 0.0;   ///< in phase: corner_errors()
+  double focusing = 0.0;    ///< in size and phase: focusing_errors()
+  double turning = 0.0;     ///< in phase: corner_errors()
+  double reflecting = 0.0;  ///< in size and phase: reflection_errors()
 };
 
 /// Of rays too faint to matter by their corners alone; of pairs that are mended at a caustic, 10 %

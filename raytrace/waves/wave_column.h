@@ -63,6 +63,8 @@ class WaveColumn {
     double slope;
   };
   [[nodiscard]] Squared at_slowest() const noexcept { return squared(slowest_edge_); }
+  [[nodiscard]] Squared at_source() const noexcept { return squared(source_edge_); }
+  [[nodiscard]] Squared at_receiver() const noexcept { return squared(edge_of_.front()); }
   /// Whether both ends, the source and the first receiver, lie above the slowest depth or the lower
   /// one at it; or below it.
   [[nodiscard]] bool ends_are_above() const noexcept {

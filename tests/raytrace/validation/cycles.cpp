@@ -271,7 +271,8 @@ TEST(Cycles, LeaveOtherRaysAsTheyAre) {
       EXPECT_EQ(rays[i].amplitude, same[i].amplitude);
     }
   };
-  expect_same(guide(SoundSpeedProfile::isovelocity(1500.0)), {1000.0, 30.0, 60.0, 10000.0, 0.0});
+  // At 1 kHz the floor reflects round waves 3 % otherwise than plane ones.
+  expect_same(guide(SoundSpeedProfile::isovelocity(1500.0)), {10000.0, 30.0, 60.0, 10000.0, 0.0});
   expect_same(channel(), {1000.0, 300.0, 2500.0, 45000.0, 0.0});   // far from any focus
   expect_same(channel(), {5000.0, 1000.0, 1000.0, 48010.0, 0.0});  // too dear
 }
