@@ -47,14 +47,15 @@ def strongest_path_is_listed(s, p):
 
 @law
 def echo_is_its_legs(s, p):
-    """A row of /echoes is the product of two rows of /arrivals: level and delay, of an omnidirectional source at rest."""
+    """A row of /echoes is the product of two rows of /arrivals, what is scattered about them included: level and delay, of an
+    omnidirectional source at rest."""
     s = still(one_echo(s))
     record = ping(s)
     out, home = need_leg(record, 0), need_leg(record, 1)
     e = record.echoes
     if len(e.get("level_db", ())) == 0:
         raise Silent("no echo")
-    size = lambda rows: np.hypot(rows["amplitude_real"], rows["amplitude_imag"])
+    size = lambda rows: np.sqrt(rows["amplitude_real"] ** 2 + rows["amplitude_imag"] ** 2 + np.nan_to_num(rows["scattered"]))
     by_path = [{int(path): k for k, path in enumerate(rows["path"])} for rows in (out, home)]
     for k in range(min(len(e["level_db"]), 200)):
         i, j = by_path[0].get(int(e["outgoing"][k])), by_path[1].get(int(e["returning"][k]))
