@@ -4,7 +4,7 @@ import math
 import numpy as np
 
 import program
-from law import (Silent, alike, copied, db, energy, expect, field, law, loudness, need_leg, norm, one_place, ping, plain, still,
+from law import (Silent, alike, copied, db, energy, expect, field, law, loudness, need_leg, norm, one_place, ping, plain, smooth, still,
                  stratified, warned)
 from program import Folder, Refused, run
 
@@ -13,12 +13,7 @@ from program import Folder, Refused, run
 def smooth_limit(s, p):
     """A roughness of nothing is none. A wave height σ takes at most 2(kσ)² of a bounce: with kσ = 1e-4, 2e-8 of each;
     what it scatters is 4(kσ)² of intensity, 2e-4 of amplitude; a hundred bounces: 1e-3 by energy."""
-    s = plain(s)
-    for name in ("surface", "bottom"):
-        boundary = s["environment"].get(name, {})
-        boundary.pop("roughness", None)
-        boundary.pop("roughness_wind", None)
-        boundary.pop("roughness_floor_db", None)
+    s = smooth(plain(s))
     first = ping(s)
     s2 = copied(s)
     sigma = 1e-4 / (2 * math.pi * s["_hz"] / 1500.0)
@@ -163,9 +158,10 @@ def stronger_target(s, p):
 def targets_add(s, p):
     """Two targets together are the sum of each alone. Synthesis leaves out -90 dB of the loudest: 3e-4 with three runs.
 
-    "auto" follows as many bounces as each run needs, so numbers stand in its place.
+    "auto" follows as many bounces as each run needs, so numbers stand in its place. What rough boundaries scatter is drawn
+    for each target by its number.
     """
-    s = plain(s)
+    s = smooth(plain(s))
     s["propagation"]["direct_blast"] = False
     s["propagation"]["fathometer"] = False
     for key in ("max_surface_bounces", "max_bottom_bounces"):
@@ -242,15 +238,13 @@ def legs_are_waves(s, p):
     Nine places along ten wavelengths, the coherent sum of paths at each, against `asdic field` by waves at the same
     ones. Rays are stationary phase: right where depth is many wavelengths, so the water is twenty of them at least.
     """
-    s = one_place(still(stratified(plain(s))))
+    s = smooth(one_place(still(stratified(plain(s)))))  # what is scattered is the rays' alone
     e = s["environment"]
     depth = e["bottom"]["depth"]
     wave = depth / p("wavelengths", [20.0, 35.0, 60.0])
     hz = 1500.0 / wave
     s["pulse"] = {"kind": "cw", "frequency": hz, "duration": 20.0 / hz, "window": "hann"}
     for boundary in (e["bottom"], e.get("surface", {})):
-        for key in [k for k in boundary if k.startswith(("roughness", "bubbles"))]:
-            del boundary[key]  # what is scattered is the rays' alone
         for key in boundary:
             if key.endswith("per_metre"):  # the same loss per wavelength as at the drawn frequency
                 boundary[key] *= hz / s["_hz"]
