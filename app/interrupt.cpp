@@ -35,12 +35,12 @@ void on_all(void (*handler)(int)) {
 extern "C" void on_last_signal(int number) {
   remove_unfinished();
   signal(number, SIG_DFL);
-  raise(number);  // when this returns: whoever waits for the program sees what ended it
+  raise(number);  // ends the program by the signal after this handler
 }
 
 extern "C" void on_signal(int) {
   signalled = true;
-  on_all(on_last_signal);  // the second, whichever it is
+  on_all(on_last_signal);  // a second signal of any kind ends the program at once
 }
 
 }  // namespace

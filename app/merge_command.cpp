@@ -69,7 +69,7 @@ void check_existing(const std::filesystem::path& output, const std::string& iden
   std::string got = "a file that is no study's";
   try {
     const study::StudyFile there(output);
-    forget_read(output);  // no part of what is merged
+    forget_read(output);  // the earlier result is not an input
     if (there.fingerprint().identity == identity) return;
     got = "results of another study (identity " + there.fingerprint().identity + ")";
   } catch (const InputError&) {

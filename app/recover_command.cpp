@@ -52,12 +52,12 @@ std::string worth_of(const std::filesystem::path& part) {
         count_of(static_cast<std::size_t>(file.file().attribute_number("", "pings_requested")),
                  "ping"),
         part.string());
-  } catch (const std::exception& error) {  // another is at work, or what is damaged
+  } catch (const std::exception& error) {  // a process is at work on it, or it is damaged
     return error.what();
   }
 }
 
-/// Prints each part that an unfinished run has left in a folder, with what it is worth.
+/// Prints each part that an unfinished run has left in a folder, and how many pings it holds.
 int list_parts(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> parts;
   for (const auto& entry : std::filesystem::directory_iterator(folder))

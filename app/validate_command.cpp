@@ -273,7 +273,7 @@ int validate_sonar(const ValidateOptions& choice, const TomlValue& document) {
   PingSimulator simulator(read_scenario(choice.path, choice.overrides), nullptr,
                           read_budget(choice.path, choice.overrides));
   bar->doing("paths of a ping, for its memory");
-  std::optional<MemoryBudget> memory;  // before anything takes it
+  std::optional<MemoryBudget> memory;  // known before anything allocates
   bool judged = done_in_time([&] { memory = simulator.memory(); });
   bar->doing("paths that a ping may lack");
   judged = judged && done_in_time([&] { simulator.judge_paths(); });

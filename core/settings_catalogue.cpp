@@ -289,6 +289,8 @@ void SettingsCatalogue::begin(const Condition& condition) {
       words += (words.empty() ? "" : " or ") + in_quotes(one);
     told.text = told.condition.key + (condition.other ? " other than " : " = ") + words;
   }
+  absent_.clear();  // of a way alone, which begins as soon as it is taken
+  last_way_ = false;
   conditions_.push_back(std::move(told));
 }
 

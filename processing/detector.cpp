@@ -434,9 +434,8 @@ ExpectedAlarms expected_alarms(const DetectorResult& of) noexcept {
   const double set = of.cells * of.false_alarm_probability;
   const bool one = of.dopplers.size() == 1;
   const bool several = of.sub_bands > 1;  // a longer cell has more samples
-  // A peak that a louder one explains is no detection of its own, and that reaches over all
-  // filters: of so many independent cells, x of them over the threshold, (1 − e⁻ˣ)/x are the
-  // loudest.
+  // A peak that a louder one explains, in any filter, is not a detection of its own. If x cells
+  // exceed the threshold in the reach of a peak on average, a share (1 − e⁻ˣ)/x of them is loudest.
   const auto left = [&](double explained) {
     const double x =
         explained * of.false_alarm_probability * static_cast<double>(of.dopplers.size());

@@ -244,8 +244,8 @@ class FactorFinder::Simulation {
 FactorFinder::FactorFinder(const Replica& replica, double step, std::size_t filters, double cell,
                            int sub_bands)
     : step_(step), cell_(cell) {
-  // So far apart that a pulse which loses by |offset| alone is not told by its top's jitter; a bank
-  // that reaches less far has no such filters.
+  // Filters this far apart differ by more than the jitter of the top, also for a pulse whose answer
+  // falls with |offset|. A narrower bank has no such filters.
   constexpr double wide = 0.27;
   const double wanted = std::max(1.0, std::round(wide * 2.0 * cell / step));
   late_ = RidgeDelay(replica, wanted * step, sub_bands);

@@ -11,10 +11,10 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 if __name__ == "__main__":
-    os.environ["MPLBACKEND"] = "agg"  # files alone are drawn: no window, whatever the shell asks for
+    os.environ["MPLBACKEND"] = "agg"  # draws files and opens no window, whatever the shell sets
     try:
         from asdic_pictures.command import main
-    except (OSError, ValueError) as error:  # of matplotlib's own folders and settings
+    except (OSError, ValueError) as error:  # in matplotlib's own folders or settings
         told = " ".join(str(error).split())
         print(f"asdic plot: matplotlib does not start: {told}; set MPLCONFIGDIR to an empty folder that can be "
               "written to, and unset MATPLOTLIBRC", file=sys.stderr)

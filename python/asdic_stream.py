@@ -32,8 +32,8 @@ WINDOW = 4          # blocks later than one that lacks a piece, until it is give
 LONGEST_GAP = 65536  # blocks or packets
 LONGEST_DELAY = 4096  # packets
 LONGEST_DESCRIPTOR = 4096  # fragments
-MOST_DESCRIPTORS = 4       # that are not whole
-SILENCE = 5.0              # of the stream's sender, after which another one's may be joined [s]
+MOST_DESCRIPTORS = 4       # incomplete descriptors that are kept
+SILENCE = 5.0              # of the sender, after which another sender's stream may be joined [s]
 
 
 class Block:
@@ -72,11 +72,11 @@ def _read(text):
 
 
 class Assembler:
-    """Packets in, blocks out, in order; without sockets. Whatever bytes it is fed, memory stays bounded.
+    """Puts packets together into blocks, in order, without sockets. For any input memory stays bounded.
 
-    It is bound to the sender and the number of the stream that it joins at a descriptor. The sender's
-    next stream is taken where it begins; another sender's when the stream has ended, or when nothing
-    of it came for SILENCE seconds.
+    It is bound to the sender and the number of the stream that it joins at a descriptor. It takes the
+    sender's next stream when that begins, and another sender's stream when its own has ended or has
+    been silent for SILENCE seconds.
 
     packets, lost, reordered, duplicates, foreign   packets so far
     others                                          packets of other streams so far
@@ -88,7 +88,7 @@ class Assembler:
         self.blocks = self.lost_blocks = 0
         self.about, self.ended, self.sender = None, False, None
         self._stream, self._over = None, False  # its number; whether it has ended
-        self._heard = 0.0       # when something of it came last [s]
+        self._heard = 0.0       # time of its last packet [s]
         self._partial = {}      # number → [first sequence, fragments, {fragment: bytes}]
         self._own, self._strange = {}, {}  # descriptors: key → [fragments, {fragment: bytes}]
         self._next = self._before = self._begin = self._latest = 0
@@ -96,8 +96,9 @@ class Assembler:
         self._seen = set()
 
     def take(self, packet, sender=None, now=0.0):
-        """sender: whatever tells senders apart; now: by a clock that never goes back [s]
-        → list of Block that are complete by it
+        """Takes a packet → list of the Blocks that it completes
+
+        sender: any value that distinguishes senders; now: time by a clock that never goes back [s]
         """
         if not HEADER.size < len(packet) <= HEADER.size + PAYLOAD:
             self.foreign += 1
@@ -121,7 +122,7 @@ class Assembler:
                     self._join(about, first, fragments, sender, stream, now)
             return []
         self._heard = now
-        far = self._is_far(sequence)  # after a long gap its next descriptor tells
+        far = self._is_far(sequence)  # after a long gap only a descriptor counts
         if not far and not self._is_new(sequence):
             return []
         if kind == DESCRIPTOR:
@@ -159,7 +160,7 @@ class Assembler:
         return True
 
     def _descriptor(self, waiting, whose, first, fragment, fragments, payload):
-        """→ what it says, once it is whole; else None"""
+        """Takes a fragment of a descriptor → its content once it is complete; otherwise None"""
         if fragments > LONGEST_DESCRIPTOR:
             self.foreign += 1
             return None
@@ -178,7 +179,7 @@ class Assembler:
         return about
 
     def _join(self, about, first, fragments, sender, stream, now):
-        """A stream begins, or is joined: what was sent before its descriptor does not belong to it."""
+        """Begins or joins a stream; packets sent before its descriptor do not belong to it."""
         after = (first + fragments) % 0x100000000
         if self.about is None or sender != self.sender or self._is_far(first):
             self._latest = (first - 1) % 0x100000000
@@ -200,7 +201,7 @@ class Assembler:
         self._longest = self._row * about["block_samples"]
 
     def _described(self, about, first, fragments, far):
-        """Its own descriptor."""
+        """Takes a descriptor of the joined stream."""
         if about["stream"] != self.about["stream"] or self._over:
             return []
         given, after = [], (first + fragments) % 0x100000000
@@ -217,7 +218,7 @@ class Assembler:
         if about.get("ended"):
             self._partial.clear()
             self.ended = self._over = True
-        elif about["block"] >= self._anchor[0]:  # not one that comes late
+        elif about["block"] >= self._anchor[0]:  # not if it is a late repetition
             self._tell(about, after)
         return given
 
@@ -227,7 +228,7 @@ class Assembler:
         whole = -(-self._longest // PAYLOAD)  # packets of a block
         known, after = self._anchor
         if (not self._next <= number <= self._next + LONGEST_GAP or _ahead(first, self._begin) < 0
-                or (number - known) * whole > max(_ahead(first, after), 0)  # so many were sent before it
+                or (number - known) * whole > max(_ahead(first, after), 0)  # packets sent before it, at the least
                 or size > self._longest or (fragment + 1 == fragments and size % self._row)):
             self.foreign += 1
             return []

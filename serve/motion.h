@@ -23,9 +23,10 @@ struct MotionTime {
   std::optional<double> since = {};
 };
 
-/// Writes it into the scenario's table of that thing, in place of what stands there. What is not
-/// said goes on as it was. \param now  its track so far   \return false if it moves like that
-/// already, so that nothing is written \throws InputError naming the command's key
+/// Writes a motion into the scenario's table of the thing that moves, in place of the earlier one.
+/// Quantities that are not given continue.   \param now  its track so far   \return false if it
+/// moves like that already, so that nothing is written   \throws InputError naming the command's
+/// key
 bool set_motion(TomlTable& wanted, const Track& now, const MotionTime& when, TomlValue& table);
 
 /// A place and a velocity as the file has them: in a place, or from there on in a straight line.

@@ -210,8 +210,8 @@ class Server::Impl {
   asio::steady_timer pause_;
   std::unique_ptr<SocketName> name_;
   Places of_socket_, of_tcp_;
-  bool refused_ = false;       // the handshake of one of them
-  std::error_code unwritten_;  // of the answers of the last that has ended
+  bool refused_ = false;       // whether a handshake was refused
+  std::error_code unwritten_;  // error of the answers to the last client
   bool stopping_ = false;
 };
 

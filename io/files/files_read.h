@@ -4,10 +4,10 @@
 
 namespace asdic::detail {
 
-/// While it lives, every file that io opens for reading is noted (by device and inode), so that no
-/// result is written over one of them: the scenario, and whatever it names. The program has one for
-/// each command; a library that has none notes nothing. One at a time. What child processes
-/// (io/isolated) read is not noted by them, so this process notes it by require_file().
+/// Notes every file that io opens for reading during its lifetime, by device and inode, so that no
+/// result is written over the scenario or a file that it names. The program has one for each
+/// command; a library without one notes nothing. Only one may exist at a time. Files read by child
+/// processes (io/isolated) are noted by this process through require_file().
 class FilesRead {
  public:
   FilesRead();

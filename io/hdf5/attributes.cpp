@@ -107,7 +107,7 @@ constexpr std::size_t most_fixed = 60'000;  // [bytes]
 void write_texts(const hdf5::Handle& object, const std::string& key, std::int64_t space,
                  std::vector<std::string> values, const std::filesystem::path& path,
                  const std::string& where) {
-  for (std::string& value : values) value = as_utf8(value);  // as their type says
+  for (std::string& value : values) value = as_utf8(value);  // their type declares it
   std::size_t longest = 1;  // with a zero at the end, see text_type()
   for (const std::string& value : values) longest = std::max(longest, value.size() + 1);
   if (longest * values.size() > most_fixed) {
@@ -258,7 +258,7 @@ std::vector<std::string> Hdf5File::attribute_texts(const std::string& object,
     impl_->check(H5Aread(id, type, buffer.data()), object, "reading the attribute " + key);
     const bool variable = H5Tis_variable_str(type) > 0;
     parts = to_strings(buffer, H5Tget_size(type), variable);
-    for (std::string& part : parts) part = as_utf8(part);  // of others, and of ours of before
+    for (std::string& part : parts) part = as_utf8(part);  // older files may have other bytes
     if (variable) H5Dvlen_reclaim(type, space, H5P_DEFAULT, buffer.data());
   } else if (type_class == H5T_INTEGER || type_class == H5T_FLOAT) {
     std::vector<double> numbers(points);

@@ -132,7 +132,7 @@ void Hdf5File::write(const std::string& dataset, std::span<const T> values, cons
 }
 
 void Hdf5File::write_text(const std::string& dataset, std::string_view given) {
-  std::string text = as_utf8(given);  // as its type says
+  std::string text = as_utf8(given);  // its type declares it
   const Handle type = hdf5::text_type(text.size() + 1);
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
   const Handle parents = make_parents();

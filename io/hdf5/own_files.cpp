@@ -132,9 +132,9 @@ bool pings(const std::filesystem::path& path) {
     return file.attribute_or("", "filetype", "") == "asdic ping" &&
            file.attribute_number("", "complete") == 0.0 && file.info("ping").shape.front() > 0;
   } catch (const InputError&) {
-    return false;  // damaged: nothing can be made of it
+    return false;  // damaged beyond use
   } catch (const RunError&) {
-    return true;  // for all that is known
+    return true;  // not known, so it is kept
   }
 }
 

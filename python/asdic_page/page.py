@@ -94,8 +94,8 @@ def is_ours(path: Path) -> bool:
 
 
 def place(file, wanted=None) -> Path:
-    """Where the page goes: beside the file; to `wanted`, a name that ends in .html; or into it, a folder, which is
-    made. \\throws InputError, OSError
+    """Path of the page: beside the file, at `wanted` if that ends in .html, or else in the folder `wanted`, which is
+    made if needed. \\throws InputError, OSError
     """
     name = Path(file).with_suffix(".html") if Path(file).suffix else Path(f"{file}.html")
     if not wanted:

@@ -280,8 +280,8 @@ Boundary Area::floor_along(const Vec2& place, double bearing, double reach) cons
 void Area::put_water(const Vec2& place, double bearing, double reach, Environment& plane) const {
   if (!maps_.water) return;
   const WaterMap& water = *maps_.water;
-  // The last column stands at the edge of the water's own map, or at the first step that is no
-  // nearer than `reach`.
+  // The last column lies at the edge of the water's own map, or at the first step that is no nearer
+  // than `reach`.
   const double step = water.spacing(place.x(), place.y());
   const double end = reach_on(water, place, bearing, spacing(place), reach + step);
   std::vector<double> at = {0.0};

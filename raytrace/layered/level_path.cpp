@@ -55,7 +55,7 @@ std::optional<FlatRay> flat_ray(const SoundSpeedProfile& water, double source_de
   // The error of the parabola is one order higher in the distance from the axis. Beside a focus,
   // where q = 0, that order is all that spreads the rays, so there the parabola has to hold better.
   const double share = 0.01 * std::min(1.0, std::abs(ray.q) / std::min(range, 1.0 / k));
-  const double away = straight ? 0.0 : std::abs(axis) + steepest / k;  // most distance from it
+  const double away = straight ? 0.0 : std::abs(axis) + steepest / k;  // largest distance from it
   for (const double there : {receiver_depth, 0.5 * (source_depth + receiver_depth),
                              source_depth - away, source_depth + away})
     if (there != source_depth && !is_parabola(water, source_depth, there, share))
@@ -108,7 +108,7 @@ void put_level_paths(const Environment& ocean, double frequency, double source_d
                      double receiver_depth, std::span<const double> ranges,
                      std::vector<Arrivals>& found) {
   const LevelRays kink = level_at(ocean, frequency, source_depth, receiver_depth);
-  // Beside a smooth extremum of c rays as flat are the flat one, seen through rounding.
+  // Near a smooth extremum of c, rays as flat as this are the level ray itself up to rounding.
   constexpr double unresolved = 2.0 * flattest;
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (!(ranges[i] > 0.0)) continue;

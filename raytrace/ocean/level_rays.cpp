@@ -25,7 +25,7 @@ double kink_near(const Environment& environment, double depth) noexcept {
 LevelRays level_within(double share_of_wavelength, const Environment& environment, double frequency,
                        double range, double depth) noexcept {
   const double here = sound_speed(environment, range, depth).c;
-  // Away from the depth, as it is at the depth itself: at a smooth minimum it is nothing there.
+  // Gradient away from the depth, extrapolated back to it; 0 at a smooth minimum.
   const auto rise = [&](double off) {
     const SoundSpeed2D there = sound_speed(environment, range, depth + off);
     return std::copysign(1.0, off) * (there.c_z - off * there.c_zz);

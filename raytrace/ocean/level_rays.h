@@ -15,8 +15,8 @@ namespace asdic::detail {
 struct LevelRays {
   double angle = 0.0;   ///< launch elevations below this are of this kind [rad]; 0: none is
   double height = 0.0;  ///< they stay so close to the source's depth: λ/1000 [m]
-  /// The kink, no further from the source than a millimetre. The level ray runs here: from beside
-  /// it, it would wind about it, and q is no more than that of its last arc [m]
+  /// Depth of the kink, at most a millimetre from the source [m]. The level ray is followed from
+  /// here, because a ray from beside the kink winds about it and has only the q of its last arc.
   double depth = 0.0;
 };
 

@@ -73,7 +73,7 @@ void ensure_bounded(const Arrivals& paths, const Environment& ocean, const LegEn
   if (!(d > 0.0)) return;
   double sum = 0.0;
   for (const Arrival& path : paths) sum += intensity(path);
-  // Hardly any leg is louder than spherical spreading: the bound itself is then not asked for.
+  // Few legs are so much louder than spherical spreading that the bound itself is needed.
   if (sum * d * d <= margin) return;
   const double most = most_intensity(ocean, ends);
   if (!(sum <= most)) tell(paths, ends, d, sum, most);

@@ -306,7 +306,7 @@ PropagationResult run_field(const PropagationCase& run_case, const Progress& pro
       answer = std::move(*waves);
     } else if (auto images = summed_images(run_case, depth, of_source, false)) {
       answer = std::move(*images);
-      if (!why_no_waves(run_case).empty()) rays_alone.clear();  // there is nothing that rays lack
+      if (!why_no_waves(run_case).empty()) rays_alone.clear();  // waves would add nothing
     } else if (auto paths = path_field(run_case, depth, of_source)) {
       answer = std::move(*paths);
     } else if (run_case.beams.elevations.empty()) {

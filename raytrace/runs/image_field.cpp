@@ -296,8 +296,12 @@ bool is_flat_guide(const PropagationCase& run_case) {
   if (ocean.section || ocean.surface.shape || ocean.bottom.shape || water.munk_parameters() ||
       !attenuation_np_per_m(ocean, run_case.frequency).is_constant())
     return false;
+  // Columns of a map are interpolated: what is the same everywhere may differ by rounding there.
+  constexpr double rounding = 1e-12;
   const auto speeds = water.speeds();
-  return std::all_of(speeds.begin(), speeds.end(), [&](double c) { return c == speeds.front(); });
+  return std::all_of(speeds.begin(), speeds.end(), [&](double c) {
+    return std::abs(c - speeds.front()) <= rounding * speeds.front();
+  });
 }
 
 std::string note_of(int images, bool extrapolated, double error_db, bool exact) {

@@ -139,7 +139,7 @@ struct ColumnSearch {
   std::span<const ReceiverColumn> columns_;
   int max_turns_;
   LevelRays level_;
-  LevelRays level_paths_;  // of receivers that have the level one
+  LevelRays level_paths_;  // for receivers that the level ray reaches
   NeighbourTest test_;
   RootFinder roots_;
   RayTrajectory trajectory_;

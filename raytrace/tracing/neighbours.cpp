@@ -327,7 +327,7 @@ bool NeighbourTest::leg_holds(const FanRay& a, const FanRay& m, const FanRay& b,
         return false;
       continue;
     }
-    if (!zm) {  // rays of one history that run through the column, and one that does not
+    if (!zm) {  // a and b cross the column with one history, and m does not
       if (!finest_apart(a.angle, b.angle)) return false;
       continue;
     }
@@ -495,7 +495,7 @@ bool NeighbourTest::parting_matters(const FanRay& a, const FanRay& m, const FanR
   bool same_boundary = true, turned_back = false;
   for (const FanRay* ray : {&a, &m, &b}) {
     if (i >= ray->legs.size()) {
-      same_boundary = false;  // it has bounced enough, or leaves: those between may go on
+      same_boundary = false;  // this ray ends here; rays between may go on
       continue;
     }
     for (std::size_t k = i; k < ray->legs.size(); ++k) {
@@ -506,7 +506,7 @@ bool NeighbourTest::parting_matters(const FanRay& a, const FanRay& m, const FanR
       turned_back |= leg.end.range < leg.begin.range;
     }
   }
-  // Rays between may reach further than the three, though not many times further.
+  // Rays between the three may reach further, but not many times further.
   const double room = 4.0 * (farthest - nearest), low = turned_back ? nearest - room : nearest;
   const auto reached = std::partition_point(columns_.begin(), columns_.end(),
                                             [&](const auto& column) { return column.range < low; });

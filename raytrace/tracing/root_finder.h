@@ -35,7 +35,7 @@ class RootFinder {
   void search(const FanRay& a, const FanRay& b, int max_turns, const Found& found);
   /// The same of rays that stay on a kink of least sound speed up to their first reflection
   /// (LevelRays): on the first leg the level ray stands for all of them.
-  /// \param level  where it runs, and how close to it receivers are on it
+  /// \param level  its depth, and the largest distance of receivers that it reaches
   void search_level(const FanRay& a, const FanRay& b, const LevelRays& level, int max_turns,
                     const Found& found);
 

@@ -17,9 +17,9 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double least_share = 1e-8;    // of a wavenumber that cycles are told of
+constexpr double least_share = 1e-8;    // of a wavenumber in the terms
 constexpr double flattest_zones = 0.1;  // of the slope that a wave of one Fresnel zone notices
-constexpr double fade_radians = 100.0;  // that flat waves fade over, at the furthest range
+constexpr double fade_radians = 100.0;  // over which flat waves fade, at the furthest range
 
 /// f·g′ − f′·g
 Complex wronskian(Complex f, Complex f_slope, Complex g, Complex g_slope) {
@@ -44,8 +44,8 @@ CycleWaves::CycleWaves(const Environment& ocean, double frequency, double source
   fade_ = fade_radians / furthest;
   const double widest = std::sqrt(2.0 * column.largest_wavenumber() / furthest);
   least_slope_ = flattest_zones * widest * widest * widest;
-  // Where a ray that is horizontal at one end turns: on that side of the slowest depth. Slopes do
-  // not tell, they are nothing where the speed is greatest.
+  // A ray that is horizontal at an end turns on that side of the slowest depth. Slopes cannot
+  // decide this, because they are 0 where the speed is greatest.
   turns_ = column.ends_are_above()   ? Turns::above
            : column.ends_are_below() ? Turns::below
                                      : Turns::between;
@@ -158,11 +158,11 @@ Environment without(Environment ocean, bool surface, bool bottom) {
   return ocean;
 }
 
-/// Rays that go into each other, and their waves: those of one term, or the flat ones.
+/// Rays that go into each other, and the waves of these rays: those of one term, or the flat ones.
 struct WaveGroup {
-  std::vector<std::size_t> rays;  // of all arrivals
-  std::vector<double> weights;    // [rays] share of their waves that is among these
-  Complex lacking = 0.0;          // what these waves have more than they
+  std::vector<std::size_t> rays;  // their indices in all arrivals
+  std::vector<double> weights;    // [rays] shares of the rays in this group
+  Complex lacking = 0.0;          // pressure of the waves less that of the rays
 
   void add(std::size_t ray, double weight, Complex pressure) {
     rays.push_back(ray);
@@ -171,9 +171,9 @@ struct WaveGroup {
   }
 };
 
-/// Adds to amplitudes so that the sum of a group's rays is its waves: from each is taken what is
-/// not sure of its amplitude, and of what is lacking then each has a share by how far it may be
-/// off. \param amplitudes  [found]
+/// Changes amplitudes so that the sum of a group's rays is its waves. The unsure part of each
+/// amplitude is taken away, and the rays share what is then lacking in proportion to their possible
+/// errors.   \param amplitudes  [found]
 void share(const WaveGroup& group, const Arrivals& found, const std::vector<RayError>& errors,
            double frequency, std::vector<Complex>& amplitudes) {
   const auto unsure = [](double error) { return 1.0 - 1.0 / (1.0 + error * error); };
@@ -252,7 +252,7 @@ void put_waves(const EigenraySolver& solver, double source_depth, double receive
   };
   int last = -1;
   bool waterborne = false;
-  std::vector<double> weights;  // [found] in the window of wavenumbers
+  std::vector<double> weights;  // [found] of their wavenumbers in the window
   for (const Arrival& ray : found) {
     waterborne = waterborne || ray.bottom_bounces == 0;
     weights.push_back(plain->window().weight(omega * ray.horizontal_slowness));
@@ -269,9 +269,10 @@ void put_waves(const EigenraySolver& solver, double source_depth, double receive
     if (there.empty()) there = cycles(surface, bottom)->terms(count, range);
     return there[number];
   };
-  // Of a term, or of flat waves (number = count), with so many bounces off either boundary at most.
+  // Group of a term, or of flat waves (number = count), with at most so many bounces off either
+  // boundary.
   const auto group_of = [&](std::size_t number, int bounces) {
-    const bool flat = number == count;  // of all cycles: bounces that rays have not are not apart
+    const bool flat = number == count;  // has all cycles, so bounces cannot be left out
     const bool surface = no_surface || (!flat && bounces > limits.max_surface_bounces),
                bottom = no_bottom || (!flat && bounces > limits.max_bottom_bounces);
     WaveGroup here{.lacking = waves_without(surface, bottom, number)};
@@ -288,11 +289,11 @@ void put_waves(const EigenraySolver& solver, double source_depth, double receive
     return here;
   };
   std::map<int, WaveGroup> groups;
-  // A term has so many turns at either side, or one more.
+  // A term has as many turns at either side, or one more.
   for (int term = 0; term < int(count); ++term)
     groups.emplace(term, group_of(std::size_t(term), term + 1));
-  // What there is of waves without rays goes to the nearest that have some: the sum stays the
-  // waves', whichever rays were found.
+  // Waves of groups without rays go to the nearest group with rays, so that the sum stays that of
+  // the waves whichever rays were found.
   const auto hand_over = [&](const WaveGroup& from, int term) {
     const auto nearest =
         std::min_element(groups.begin(), groups.end(), [&](const auto& a, const auto& b) {

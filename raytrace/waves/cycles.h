@@ -40,20 +40,20 @@ class CycleWaves {
   /// horizontal at source or receiver have one term.
   [[nodiscard]] int term_of(const Branch& branch) const noexcept;
 
-  /// How much of a wavenumber's waves is told of by cycles, 1 … 0: those so flat that a cycle is
-  /// not resolved at the furthest range have no terms. \param wavenumber  [1/m]
+  /// Share of a wavenumber's waves that is in the terms, 1 … 0. Waves so flat that a cycle is not
+  /// resolved at the furthest range have no terms.   \param wavenumber  [1/m]
   [[nodiscard]] double cycled(double wavenumber) const noexcept;
-  /// How many cycles flat waves go through up to a range, about.
+  /// Approximate number of cycles of flat waves up to a range.
   [[nodiscard]] int flat_cycles(double range) const noexcept;
 
-  /// p of the first terms, and that of flat waves, however many cycles, as one more;
+  /// Pressures of the first terms, followed by that of flat waves with any number of cycles
   /// \return [count + 1]
   /// \param range  up to the furthest [m]
   [[nodiscard]] std::vector<std::complex<double>> terms(std::size_t count, double range) const;
 
  private:
-  /// Of one wavenumber, in g: the first term, the next one, what each after that has more, and
-  /// what is too flat for terms.
+  /// Parts of g at one wavenumber: the first term, the next one, the factor from each term to the
+  /// next, and the flat waves.
   struct Kernel {
     std::complex<double> first, next, cycle, flat;
   };
@@ -67,8 +67,8 @@ class CycleWaves {
   bool source_is_upper_, affordable_ = false;
   WaveColumn::Squared slowest_;
   Turns turns_;
-  double flattest_, fade_;  // wavenumber at the slowest depth, and what waves beside it fade over
-  double least_slope_;      // of what waves are resolved by [1/m³]
+  double flattest_, fade_;       // wavenumber at the slowest depth; interval over which terms fade
+  double least_slope_;           // least slope that waves resolve [1/m³]
   std::vector<Kernel> kernels_;  // [window_.count]
 };
 

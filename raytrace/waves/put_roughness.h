@@ -9,12 +9,12 @@ namespace asdic::detail {
 /// The same ocean between mirrors: neither roughness nor bubbles.
 [[nodiscard]] Environment without_roughness(Environment ocean);
 
-/// Gives paths found between mirrors what rough boundaries leave of each: of its amplitude the
-/// coherent part at every bounce, and beside it what is scattered about the path. Waves' amplitudes
-/// (caustics.h, cycles.h) are made between mirrors and get it here, once, so nothing is divided by
-/// what a rough boundary has left. docs/theory/waves.md, "Rough boundaries"
-/// \param ocean  is_layered(), the rough one   \param faintest  pressure, of a path's own without
-/// reflections, below which it is dropped   \param paths  changed
+/// Applies rough boundaries to paths found between mirrors: multiplies each amplitude by the
+/// coherent part at every bounce, and adds the sound scattered about the path. Amplitudes of waves
+/// (caustics.h, cycles.h) are computed between mirrors and get it here, once, so that nothing is
+/// divided by the coherent loss. docs/theory/waves.md, "Rough boundaries"
+/// \param ocean  is_layered(), the rough one   \param faintest  pressure below which a path is
+/// dropped, relative to its own without reflections   \param paths  changed
 void put_roughness(const Environment& ocean, double frequency, double faintest, Arrivals& paths);
 
 }  // namespace asdic::detail

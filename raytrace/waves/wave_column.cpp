@@ -215,15 +215,17 @@ WaveColumn::AtDepths WaveColumn::solutions(Complex xi) const noexcept {
     if (edge == receiver_edge) at.receiver.*side = wave;
     if (edge == slowest_edge_) at.slowest.*side = wave;
   };
-  DepthWave wave = beside(environment_.surface, xi, layers_.front().k2[0]);
-  for (std::size_t edge = 0;; ++edge) {
+  std::size_t edge = first;
+  DepthWave wave = upper_start(xi, edge);
+  for (;; ++edge) {
     keep(edge, &Solutions::above, wave);
     if (edge == last) break;
     const WaveLayer& layer = layers_[edge];
     follow(wave, layer.k2[0] - xi2, layer.k2[1] - xi2, layer.thickness);
   }
-  wave = beside(environment_.bottom, xi, layers_.back().k2[1]);
-  for (std::size_t edge = layers_.size();; --edge) {
+  edge = last;
+  wave = lower_start(xi, edge);
+  for (;; --edge) {
     keep(edge, &Solutions::below, {wave.u, -wave.du, wave.growth});
     if (edge == first) break;
     const WaveLayer& layer = layers_[edge - 1];
@@ -240,29 +242,35 @@ bool WaveColumn::fades(std::size_t layer, double xi, double& decay) const noexce
   return least > 0.0;
 }
 
+DepthWave WaveColumn::upper_start(Complex xi, std::size_t& edge) const noexcept {
+  for (double decay = 0.0; edge > 0 && decay < beyond_decay; --edge)
+    if (!fades(edge - 1, xi.real(), decay)) decay = 0.0;
+  if (edge == 0) return beside(environment_.surface, xi, layers_.front().k2[0]);
+  return {1.0, Complex(0.0, 1.0) * vertical_wavenumber(layers_[edge].k2[0] - xi * xi)};
+}
+
+DepthWave WaveColumn::lower_start(Complex xi, std::size_t& edge) const noexcept {
+  for (double decay = 0.0; edge < layers_.size() && decay < beyond_decay; ++edge)
+    if (!fades(edge, xi.real(), decay)) decay = 0.0;
+  if (edge == layers_.size()) return beside(environment_.bottom, xi, layers_.back().k2[1]);
+  return {1.0, Complex(0.0, 1.0) * vertical_wavenumber(layers_[edge].k2[0] - xi * xi)};
+}
+
 DepthWave WaveColumn::above(Complex xi, std::size_t edge) const noexcept {
   const Complex xi2 = xi * xi;
-  std::size_t first = edge;
-  for (double decay = 0.0; first > 0 && decay < beyond_decay; --first)
-    if (!fades(first - 1, xi.real(), decay)) decay = 0.0;
-  const Complex q = layers_[first].k2[0] - xi2;
-  DepthWave wave = first == 0 ? beside(environment_.surface, xi, layers_.front().k2[0])
-                              : DepthWave{1.0, Complex(0.0, 1.0) * vertical_wavenumber(q)};
-  for (; first < edge; ++first)
-    follow(wave, layers_[first].k2[0] - xi2, layers_[first].k2[1] - xi2, layers_[first].thickness);
+  std::size_t at = edge;
+  DepthWave wave = upper_start(xi, at);
+  for (; at < edge; ++at)
+    follow(wave, layers_[at].k2[0] - xi2, layers_[at].k2[1] - xi2, layers_[at].thickness);
   return wave;
 }
 
 DepthWave WaveColumn::below(Complex xi, std::size_t edge) const noexcept {
   const Complex xi2 = xi * xi;
-  std::size_t first = edge;
-  for (double decay = 0.0; first < layers_.size() && decay < beyond_decay; ++first)
-    if (!fades(first, xi.real(), decay)) decay = 0.0;
-  DepthWave wave = beside(environment_.bottom, xi, layers_.back().k2[1]);
-  if (first < layers_.size())
-    wave = {1.0, Complex(0.0, 1.0) * vertical_wavenumber(layers_[first].k2[0] - xi2)};
-  for (; first > edge; --first) {
-    const WaveLayer& layer = layers_[first - 1];
+  std::size_t at = edge;
+  DepthWave wave = lower_start(xi, at);
+  for (; at > edge; --at) {
+    const WaveLayer& layer = layers_[at - 1];
     follow(wave, layer.k2[1] - xi2, layer.k2[0] - xi2, layer.thickness);
   }
   return wave;

@@ -83,6 +83,10 @@ class WaveColumn {
   void cut(double from, double to, double omega);
   void find_wavenumbers();
   [[nodiscard]] bool fades(std::size_t layer, double xi, double& decay) const noexcept;
+  /// The wave that above() and below() follow from the surface or the bottom, or from where a wave
+  /// of that wavenumber has died out (350 dB). \param edge  where it is wanted; becomes where it is
+  [[nodiscard]] DepthWave upper_start(std::complex<double> xi, std::size_t& edge) const noexcept;
+  [[nodiscard]] DepthWave lower_start(std::complex<double> xi, std::size_t& edge) const noexcept;
   [[nodiscard]] std::size_t slowest_edge() const noexcept;
   [[nodiscard]] WaveLayer layer(double from, double to) const noexcept;
   [[nodiscard]] Squared squared(std::size_t edge) const noexcept;

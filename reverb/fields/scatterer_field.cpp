@@ -48,7 +48,7 @@ void ScattererStatistics::describe(Fields& field) {
   if (field.reads()) coherence_time = frozen ? infinity : time.value_or(otherwise);
   field("k_shape", k_shape, {.noun = "shape", .low = 0.05, .high = 1e4},
         "of the gamma-distributed texture");
-  if (k_shape || field.exhaustive())
+  if (const Only with(field, k_shape || field.exhaustive(), {.key = "k_shape"}); with)
     field("correlation_length", correlation_length,
           {.noun = "length", .unit = "m", .low = 1e-3, .high = 1e6}, "of the texture");
 }

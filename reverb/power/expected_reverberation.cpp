@@ -417,7 +417,7 @@ struct EnergySteps {
 std::vector<double> ExpectedReverberation::mean_power(const SentPulse& pulse, double first,
                                                       double step, std::size_t count) const {
   constexpr std::size_t most_tasks = 16;
-  std::vector<std::size_t> cuts;  // between places
+  std::vector<std::size_t> cuts;  // first samples of tasks
   for (std::size_t task = 0; task <= most_tasks; ++task) {
     std::size_t at = samples.size() * task / most_tasks;
     while (at > 0 && at < samples.size() && samples[at].place == samples[at - 1].place) ++at;

@@ -27,7 +27,7 @@ struct ExpectedReverberation {
     std::complex<double> amplitude = 0.0;  // of the area that the place stands for
     /// Standard deviation of its phase over that area: outward, beside that and in depth [rad].
     std::array<float, 3> phases{};
-    float extent = 0.0F;  ///< of the delay over that area and depth, centred on `delay` [s]
+    float extent = 0.0F;  ///< range of the delay over that area and depth, about `delay` [s]
   };
   /// Rings or sectors begin…end of a field.
   struct Block {

@@ -504,7 +504,7 @@ ReverberationStreams::ReverberationStreams(std::span<const ScatteringField* cons
       const std::size_t first_part = parts.size();
       double before = 0.0;
       for (const PartSum& part : sum.parts) {
-        if (!(part.power() > 0.0)) continue;  // no sound, and so no direction
+        if (!(part.power() > 0.0)) continue;  // without sound it has no direction
         parts.push_back(finished(part));
         parts.back().chance = (before += part.power()) / sum.power();
       }

@@ -22,11 +22,11 @@ double wind_of_height(double rms_height) { return std::sqrt(rms_height * sea_gra
 std::vector<RoughBounce> rough_bounces(const Environment& ocean, const Arrival& path,
                                        double frequency) {
   std::vector<RoughBounce> found;
-  // Arcs are long in proportion to range: what deflects a ray by metres asks for no more.
+  // Lengths of arcs are approximated in proportion to range, since rays are deflected by metres.
+  // `reach` is about the range of the leg.
   double range = 0.0;
   for (const Bounce& bounce : path.bounces) range = std::max(range, bounce.range);
-  const double reach =
-      std::max(range, path.path_length * std::cos(path.launch_elevation));  // of the leg, about
+  const double reach = std::max(range, path.path_length * std::cos(path.launch_elevation));
   for (const Bounce& bounce : path.bounces) {
     const bool surface = bounce.boundary == BoundaryKind::surface;
     const Boundary& boundary = surface ? ocean.surface : ocean.bottom;
@@ -210,8 +210,8 @@ Kink kink_at(const RoughBounce& at, double length, double& strongest, Sea sea,
   return {};
 }
 
-/// Length that the kinks of one leg add to it [m]: of each by itself, and δ_i δ_j s_<(L − s_>)/L of
-/// every two, for turns down and aside.
+/// Length that the kinks of one leg add to it [m]: the sum of their own, and δ_i δ_j s_<(L − s_>)/L
+/// for every two of them, for turns down and for turns aside.
 class Excess {
  public:
   explicit Excess(double length) : length_(length) {}
@@ -308,8 +308,8 @@ std::vector<ScatteredPart> forward_scatter(const Environment& ocean,
                  (kink.along_way * ahead + kink.across * right).dot(leg.from + at.range * ahead);
         one.shift += kink.omega / (2.0 * pi);
         if (!last) continue;
-        // Towards the end of the last leg: a ray that leaves the surface more steeply goes down
-        // more.
+        // Change of direction at the end of the last leg. A ray that leaves the surface more
+        // steeply also arrives more steeply.
         one.elevation -= kink.out * (at.moves ? 1.0 : -1.0);
         one.bearing += kink.aside * at.share / std::max(at.cosine, 0.1);
       }

@@ -22,7 +22,7 @@ struct RoughBounce {
   double along = 0.0;  ///< distance s along the path [m]
   double share = 0.0;  ///< share of the path's length and delay up to it
   double range = 0.0;  ///< horizontal distance to it [m]
-  bool moves = false;  ///< off the surface, whose waves run
+  bool moves = false;  ///< whether it is off the surface, whose waves move
 };
 
 /// Change of direction at a bounce, with the waves of the sea that make it and turn the phase.
@@ -37,7 +37,7 @@ struct Kink {
 /// Bounces of a path off rough boundaries, with the kinks that they give it in each part. All pairs
 /// of paths to which the path belongs share them.
 struct RoughPath {
-  double length = 0.0, delay = 0.0;  ///< of the path [m], [s]
+  double length = 0.0, delay = 0.0;  ///< length and delay of the path [m], [s]
   std::vector<RoughBounce> bounces;  ///< in their order along it
   std::vector<Kink> kinks;           ///< [parts × bounces]
 };
@@ -51,9 +51,9 @@ struct RoughPath {
 /// One way of the sound between two ends, along one path.
 struct ScatteredLeg {
   const RoughPath* path = nullptr;  ///< drawn with at least as many parts
-  Vec2 from = Vec2::Zero();         ///< where it begins, on the map [m]
-  double bearing = 0.0;             ///< of travel [rad]
-  double start = 0.0;               ///< when, since the start of the scenario [s]
+  Vec2 from = Vec2::Zero();         ///< beginning, on the map [m]
+  double bearing = 0.0;             ///< bearing of travel [rad]
+  double start = 0.0;               ///< time at its beginning, since the start of the scenario [s]
 };
 
 /// One of the parts into which what rough boundaries scatter about a path is drawn.

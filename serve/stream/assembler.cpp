@@ -88,7 +88,7 @@ void Assembler::take(const Datagram& datagram, const Give& give) {
     return;
   }
   heard_ = datagram.time;
-  const bool far = is_far(ahead(packet->sequence, latest_));  // its next descriptor tells
+  const bool far = is_far(ahead(packet->sequence, latest_));  // a descriptor has to come first
   if (!far && !is_new(*packet)) return;
   if (describes)
     take_descriptor(*packet, datagram, own_, give);
@@ -163,7 +163,7 @@ void Assembler::take_block(const Packet& packet, const Give& give) {
   const bool last = packet.fragment + 1 == packet.fragments;
   const std::size_t size = (packet.fragments - std::size_t{1}) * most_payload +
                            (last ? packet.payload.size() : std::size_t{1});
-  // So many packets were sent between the latest descriptor and it, at the least.
+  // Least number of packets that were sent between the latest descriptor and this one.
   const auto between =
       (number - known_block_) *
       static_cast<std::int64_t>((sizes_.longest + most_payload - 1) / most_payload);

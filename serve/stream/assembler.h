@@ -11,14 +11,14 @@
 
 namespace asdic::detail::serve {
 
-/// Puts the packets of a stream together again, in whatever order they come, and tells what is
-/// missing. Whatever bytes it is fed: memory stays bounded, and nothing is put together out of
-/// pieces of different messages.
+/// Puts the packets of a stream together, in whatever order they come, and reports what is missing.
+/// For any input memory stays bounded, and no message is made of pieces of different messages.
 ///
 /// Blocks come out in their order. One that lacks a piece is waited for until `window` blocks later
-/// something has arrived; then it is lost, whole. Before join() no block is taken: what its bytes
-/// mean is not known yet. Afterwards only packets with the stream's number and sender are taken. Of
-/// other streams the descriptors alone are read, and may be joined if may_join() allows it.
+/// something has arrived; then it is lost, whole. Before join() no block is taken, because the
+/// meaning of its bytes is not known yet. Afterwards only packets with the stream's number and
+/// sender are taken. Only descriptors of other streams are read, and such a stream may be joined if
+/// may_join() allows it.
 class Assembler {
  public:
   struct Message {
@@ -28,7 +28,7 @@ class Assembler {
     std::uint32_t packets = 1;
     std::uint64_t stream = 0;  ///< number of the stream
     std::string sender = {};
-    double time = 0.0;  ///< at which its last packet came [s]
+    double time = 0.0;  ///< time of its last packet [s]
     std::string content = {};
     std::uint64_t lost = 0;  ///< blocks directly before it
   };
@@ -37,7 +37,7 @@ class Assembler {
     std::uint64_t lost = 0;         ///< packets, by the gaps in their numbers
     std::uint64_t reordered = 0;    ///< came after a later one
     std::uint64_t duplicates = 0;   ///< came again
-    std::uint64_t foreign = 0;      ///< no packets of ours, impossible in the stream, or too late
+    std::uint64_t foreign = 0;      ///< not asdic packets, impossible in the stream, or too late
     std::uint64_t others = 0;       ///< packets of other senders while the stream goes on
     std::uint64_t blocks = 0;       ///< given
     std::uint64_t lost_blocks = 0;  ///< not whole
@@ -45,7 +45,7 @@ class Assembler {
   using Give = std::function<void(Message&&)>;
   static constexpr std::int64_t window = 4;  ///< blocks
 
-  static constexpr double silence = 5.0;  ///< before another sender's stream is joined [s]
+  static constexpr double silence = 5.0;  ///< after which another sender's stream may be joined [s]
 
   /// Sizes of a stream's blocks [bytes].
   struct Sizes {
@@ -101,14 +101,14 @@ class Assembler {
   std::string sender_;
   std::uint64_t stream_ = 0;
   bool over_ = false;
-  double heard_ = 0.0;                      // when a packet of the stream came last [s]
-  Descriptors own_, others_;                // that are not whole
+  double heard_ = 0.0;                      // time of the stream's last packet [s]
+  Descriptors own_, others_;                // incomplete ones
   std::map<std::int64_t, Partial> blocks_;  // of the window
   std::int64_t next_ = 0;
   std::uint64_t lost_ = 0;  // blocks since the last one that was given
   Sizes sizes_;
   std::uint32_t begin_ = 0;        // sequence number before which nothing belongs to the stream
-  std::int64_t known_block_ = 0;   // of the latest descriptor
+  std::int64_t known_block_ = 0;   // block of the latest descriptor
   std::uint32_t known_after_ = 0;  // sequence number after that
   std::uint32_t latest_ = 0;
   static constexpr std::size_t remembered = 4096;  // packets

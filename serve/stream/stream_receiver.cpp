@@ -18,7 +18,7 @@ void StreamReceiver::described(const Assembler::Message& message, const Assemble
   auto said = read_descriptor(message.content);
   if (!said || said->stream != message.stream) return;
   const bool own = assembler_.is_own(message);
-  if (own && (ended_ || said->block < about_->block)) return;  // or it comes late
+  if (own && (ended_ || said->block < about_->block)) return;  // a late repetition
   if (own && said->ended) {
     assembler_.finish(said->block, give);
     ended_ = true;

@@ -196,7 +196,7 @@ class UdpReceiver::Impl {
 
   asio::io_context io_{1};
   Udp::endpoint from_, sender_;
-  std::string sender_text_;  // of the latest datagram
+  std::string sender_text_;  // sender of the latest datagram
   Udp::socket socket_;
   std::array<char, 65536> bytes_{};
 };

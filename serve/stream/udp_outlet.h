@@ -38,7 +38,8 @@ class UdpReceiver {
   UdpReceiver(const UdpReceiver&) = delete;
   UdpReceiver& operator=(const UdpReceiver&) = delete;
 
-  /// The next packet, valid until the next call; no bytes if none comes. \param seconds  to wait
+  /// The next packet, valid until the next call; no bytes if none comes.   \param seconds  longest
+  /// time to wait
   [[nodiscard]] Datagram next(double seconds);
 
  private:

@@ -72,7 +72,8 @@ std::optional<DelayCurve> curve_of(const EchoContext& context, const Kinematics&
                      highest, aperture);
 }
 
-/// The blast at one phone, or at the reference point for all of them. \return where it is received
+/// Adds the blast at one phone, or at the reference point for all of them.   \return place of the
+/// receiver then
 Vec3 receive(const EchoContext& context, int channel, DirectBlast& blast) {
   const PingGeometry& geometry = context.geometry;
   // Of the phone from the reference point, as it was at the ping: what its return is gridded by.
@@ -81,7 +82,7 @@ Vec3 receive(const EchoContext& context, int channel, DirectBlast& blast) {
   const Kinematics& source = geometry.source();
   BlastPaths paths = blast_paths(context, channel);
   blast.bounces.include(paths.followed);
-  std::shared_ptr<const MetLeg> leg;  // for other frequencies than the centre
+  std::shared_ptr<const MetLeg> leg;  // null: amplitudes of the centre serve
   if (context.listens && context.pulse != nullptr &&
       context.scenario().propagation.band != BandOfLosses::narrow)
     leg = std::make_shared<const MetLeg>(MetLeg{.from = source.position,
@@ -110,8 +111,8 @@ Vec3 receive(const EchoContext& context, int channel, DirectBlast& blast) {
   return paths.end;
 }
 
-/// Whether all that is received at the reference point is a plane wave to the phones. \param place
-/// of the reference point when the first sound comes [m]
+/// Whether every path at the reference point is a plane wave over the phones.   \param place
+/// reference point when the first sound arrives [m]
 bool plane_waves(const EchoContext& context, const DirectBlast& blast, const Vec3& place) {
   return std::all_of(blast.received.begin(), blast.received.end(),
                      [&](const EchoPath& path) {

@@ -18,7 +18,7 @@ struct DirectBlast {
 struct BlastPaths {
   Leg leg;                   ///< with the paths to where it is when the first of them comes
   std::vector<MetPath> met;  ///< [paths]
-  Vec3 end = Vec3::Zero();   ///< where it is then [m]
+  Vec3 end = Vec3::Zero();   ///< place of the phone then [m]
   Carried receiver;          ///< what receives
   Bounces followed;
   PathLimits limits;

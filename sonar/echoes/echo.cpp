@@ -122,7 +122,7 @@ class EchoFinder {
     });
   }
 
-  /// \param home  at the reference point, there at a place
+  /// \param home  paths to the reference point   \param end  place of that point
   [[nodiscard]] bool alike_at_phones(const Way& out, const Leg& home, const Kinematics& end) const {
     return is_alike_at_phones(context_, {home, end.position}, [&](int phone) -> ArrivedLeg {
       Way own = to_phone(out, phone, home, true);
@@ -130,8 +130,9 @@ class EchoFinder {
     });
   }
 
-  /// The way back to a phone. Over slopes rays are followed there, where it is `near`; the
-  /// amplitude of waves is to be found. \param home  at the reference point
+  /// Way back to a phone. Over slopes the rays of the reference point are followed to a phone that
+  /// is `near`; amplitudes of waves are always computed there.   \param home  paths to the
+  /// reference point
   [[nodiscard]] Way to_phone(const Way& out, int phone, const Leg& home, bool near) const {
     return way_back(out, phone,
                     near && !layered_ ? std::span(home.arrivals) : std::span<const Arrival>());
@@ -142,7 +143,8 @@ class EchoFinder {
     return geometry_.receiver(context_.array, channel);
   }
 
-  /// From where the first sound strikes the target. \param known  paths to somewhere nearby
+  /// Way back from where the first sound strikes the target.   \param known  paths to a place
+  /// nearby
   [[nodiscard]] Way way_back(const Way& out, int channel,
                              std::span<const Arrival> known = {}) const {
     const Carried receiver = this->receiver(channel);
@@ -218,7 +220,8 @@ class EchoFinder {
     }
   }
 
-  /// The paths of a way, for other frequencies than the centre; null: nobody asks.
+  /// Leg with the paths of a way, for other frequencies than the centre; null if these are not
+  /// needed.
   [[nodiscard]] std::shared_ptr<const MetLeg> across_the_band(const Vec3& from,
                                                               const Way& way) const {
     if (!context_.listens || context_.pulse == nullptr ||
@@ -325,8 +328,8 @@ class EchoFinder {
     return found;
   }
 
-  /// Draws what rough boundaries make of the paths there, once for all phones, and into how many
-  /// parts.
+  /// Draws the scattering of the outgoing paths by rough boundaries, once for all phones, and
+  /// chooses the number of parts.
   void draw_scattering(const Way& out, const Way& back) {
     constexpr std::size_t most = 4096;  // of a target
     const std::size_t pairs = out.leg.arrivals.size() * back.leg.arrivals.size();
@@ -335,7 +338,7 @@ class EchoFinder {
     rough_out_ = rough_paths(out.leg.arrivals, 1);
   }
 
-  /// \param leg  1: there; 2: home
+  /// \param leg  1: outgoing; 2: returning
   [[nodiscard]] std::vector<RoughPath> rough_paths(const Arrivals& paths, std::uint64_t leg) const {
     std::vector<RoughPath> found;
     for (const Arrival& path : paths)
@@ -348,7 +351,7 @@ class EchoFinder {
   /// A number that names the transmitter and the target.
   [[nodiscard]] std::uint64_t entity() const {
     return mixed(static_cast<std::uint64_t>(geometry_.sent().transmitter),
-                 static_cast<std::uint64_t>(index_));
+                 target_identity(scenario_, index_));
   }
 
   /// What rough boundaries scatter about a pair of paths. \param echoes  of the pair's own
@@ -583,9 +586,9 @@ class EchoFinder {
   double latest_;    // end of the record [s]
   Bounces bounces_;  // that are followed
   PathLimits limits_;
-  MovingPaths moving_, closely_;      // closely: delays as they change during a pulse
-  int parts_ = 1;                     // in which what is scattered about a pair is drawn
-  std::vector<RoughPath> rough_out_;  // of the paths there
+  MovingPaths moving_, closely_;      // closely_: follows delays within a pulse
+  int parts_ = 1;                     // number of parts of a pair's scattered sound
+  std::vector<RoughPath> rough_out_;  // of the outgoing paths
 };
 
 }  // namespace

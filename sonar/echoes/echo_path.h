@@ -32,7 +32,8 @@ struct EchoPath {
   double struck = 0.0;    ///< when the leading edge meets the target, since the ping's start [s]
   Return received;        ///< at the array's reference point (or the phone)
   PathResponse response;  ///< for other frequencies than the pulse's centre
-  /// What it was carried by, each where it was met; none: the pulse's centre stands for the band.
+  /// Legs of the echo, each to where its path was met; empty if the centre's amplitude serves the
+  /// whole band.
   std::vector<PathOnLeg> legs = {};
   std::complex<double> glint = 1.0;      ///< what the target's place makes of the pressure
   std::optional<DelayCurve> curve = {};  ///< where a constant Doppler factor is not enough

@@ -11,7 +11,7 @@
 namespace asdic::detail {
 namespace {
 
-/// Whether what it reflects is a function of frequency.
+/// Whether the reflection of a boundary depends on frequency.
 bool changes_with_frequency(const Boundary& boundary) {
   const auto depends = [](const BoundaryMaterial& material) {
     return depends_on_frequency(material);
@@ -21,13 +21,13 @@ bool changes_with_frequency(const Boundary& boundary) {
                                         boundary.shape->materials().end(), depends));
 }
 
-/// Of the vertical plane through both ends.
+/// Solver of the vertical plane through both ends of a leg.
 std::shared_ptr<const EigenraySolver> solver_of(const PropagationPaths& paths, const MetLeg& leg) {
   const Separation way = separation(leg.from, leg.to);
   return paths.solver(paths.plane(leg.from, way.bearing, way.range));
 }
 
-/// What all bounces of a path leave at a frequency.
+/// Product of the reflection coefficients of a path's bounces at a frequency.
 std::complex<double> reflected(const Environment& ocean, const Arrival& path, double frequency) {
   std::complex<double> product = 1.0;
   for (const Bounce& bounce : path.bounces) {
@@ -45,12 +45,13 @@ std::complex<double> reflected(const Environment& ocean, const Arrival& path, do
   return product;
 }
 
-/// Shares what paths that a band does not resolve bring together among them as at the centre: which
-/// of them has it may change at once with frequency, where rays meet, and their sum does not.
-/// \param amplitudes  [leg.paths] at a frequency, taken to their delays at the centre
+/// Shares the sum of paths that a band does not resolve in the same way as at the centre. Where
+/// rays meet, the sound may jump from one path to another with frequency, while their sum is
+/// smooth.
+/// \param amplitudes  [leg.paths] at a frequency, with phases for the delays at the centre
 void share_unresolved(const MetLeg& leg, double frequency, double half_width,
                       std::vector<std::complex<double>>& amplitudes) {
-  const double resolved = 0.05 / half_width;  // of delays [s]
+  const double resolved = 0.05 / half_width;  // difference of delays [s]
   const auto turned = [&](std::size_t i) {
     return std::polar(1.0, -2.0 * pi * std::fmod(frequency * leg.paths[i].delay, 1.0));
   };
@@ -72,9 +73,9 @@ void share_unresolved(const MetLeg& leg, double frequency, double half_width,
   }
 }
 
-/// Of the paths found at a frequency, the one that a path is there.
+/// Path found at a frequency that continues a given path; null if there is none.
 const Arrival* become(const Arrivals& found, const Arrival& path, bool layered) {
-  // There is one diffracted arrival, from wherever it comes.
+  // There is only one diffracted arrival, whatever its direction.
   if (path.kind == ArrivalKind::diffracted)
     for (const Arrival& one : found)
       if (one.kind == ArrivalKind::diffracted) return &one;
@@ -117,7 +118,8 @@ SampledResponse sampled_response(
       if (k % 2 == 0) finer.values[k] = known.values[k / 2];
       greatest = std::max(greatest, size(finer.values[k]));
     }
-    /// Computes every `step`-th of the new values. \return how far they were off, the most
+    /// Computes every `step`-th of the new values.   \return largest error of the prediction,
+    /// relative
     const auto off = [&](std::size_t first, std::size_t step) {
       double worst = 0.0;
       for (std::size_t k = first; k <= cells; k += step) {
@@ -130,7 +132,7 @@ SampledResponse sampled_response(
       }
       return greatest > 0.0 ? worst / greatest : 0.0;
     };
-    const std::size_t few = std::max<std::size_t>(1, cells / 8);  // four of the new ones, or all
+    const std::size_t few = std::max<std::size_t>(1, cells / 8);  // for four new values, or all
     known.error = off(few | 1, 2 * few);
     if (known.error <= error) return known;
     finer.error = std::max(known.error, off(1, 2));
@@ -146,7 +148,7 @@ bool MetLeg::by_waves() const noexcept {
 
 PathOnLeg path_on_leg(const std::shared_ptr<const MetLeg>& known, std::size_t path,
                       const Vec3& from, const MetPath& met) {
-  constexpr double periods = 2.0;  // as waves keep their amplitude where a path is followed
+  constexpr double periods = 2.0;  // over which waves keep their amplitude
   if (met.path.kind == ArrivalKind::ray ||
       std::abs(met.path.delay - known->paths[path].delay) * known->frequency < periods)
     return {known, path};
@@ -160,7 +162,7 @@ PathOnLeg path_on_leg(const std::shared_ptr<const MetLeg>& known, std::size_t pa
 
 bool changes_with_frequency(const PropagationPaths& paths, const MetLeg& leg) {
   if (leg.by_waves()) return true;
-  if (paths.volume() != nullptr) return false;  // bounces do not tell where they are
+  if (paths.volume() != nullptr) return false;  // places of bounces are not known
   const auto solver = solver_of(paths, leg);
   const bool surface = changes_with_frequency(solver->environment().surface),
              bottom = changes_with_frequency(solver->environment().bottom);
@@ -186,10 +188,10 @@ std::vector<std::complex<double>> amplitudes_at(const PropagationPaths& paths, c
   const Arrivals found = paths.find(leg.from, leg.to, f, leg.limits);
   for (const Arrival& path : leg.paths) {
     Arrivals followed;
-    if (path.kind == ArrivalKind::diffracted)  // also where rays get there at that frequency
+    if (path.kind == ArrivalKind::diffracted)  // even if rays reach the place at that frequency
       followed = paths.follow(std::span(&path, 1), leg.from, leg.to, f, leg.limits);
     const Arrival* same = become(followed.empty() ? found : followed, path, paths.layered());
-    if (same == nullptr) {  // too faint there
+    if (same == nullptr) {  // too faint at that frequency
       amplitudes.emplace_back(0.0);
       continue;
     }
@@ -215,8 +217,8 @@ SampledResponse leg_response(const PropagationPaths& paths, const MetLeg& leg, d
 }
 
 bool too_narrow_to_change(const MetLeg& leg, double half_width, double least) {
-  // By itself an amplitude falls as e^{−10·…} of some power of frequency at most. Waves of one term
-  // have the delays of its rays, which have two turns or bounces more at most.
+  // The amplitude of a single wave changes with frequency at most as its 10th power. Waves of one
+  // term have the delays of its rays, whose numbers of turns and bounces differ by at most two.
   constexpr double steepest = 10.0;
   if (steepest * half_width > least * leg.frequency) return false;
   const auto vertices = [](const Arrival& path) {

@@ -14,23 +14,24 @@ namespace asdic::detail {
 
 /// Largest number of frequencies at which a leg by waves is computed across a band.
 inline constexpr std::size_t most_wave_frequencies = 65;
-/// The same for a leg by rays, of which the boundaries' reflection alone is computed.
+/// Largest number for a leg by rays, for which only the boundaries' reflection is computed.
 inline constexpr std::size_t most_ray_frequencies = 129;
-/// Error that polynomials between those frequencies may have, over the greatest value: −48 dB.
+/// Tolerated error of the polynomials between those frequencies, over the largest value: −48 dB.
 inline constexpr double leg_response_error = 4e-3;
 
-/// Responses known at a few frequencies of a band, polynomials between them.
+/// Responses at a few frequencies of a band, interpolated by polynomials.
 struct SampledResponse {
   BandNodes nodes;
   std::vector<std::vector<std::complex<double>>> values;  ///< [nodes][responses]
-  double error = 0.0;  ///< largest difference from what was computed between the nodes, over the
-                       ///< greatest value, both root sums of squares over the responses
+  double error = 0.0;  ///< largest difference from values computed between the nodes, over the
+                       ///< largest value; both are root sums of squares over the responses
 
   [[nodiscard]] std::vector<std::complex<double>> at(double frequency) const;
 };
 
-/// Samples responses at Chebyshev–Lobatto points, twice as many until they foretell four of the
-/// next ones to `error`, or there are `most`. \param responses  of a frequency [Hz]
+/// Samples responses at Chebyshev–Lobatto points, and doubles their number until they predict four
+/// of the next ones to `error`, or there are `most`.   \param responses  functions of a frequency
+/// [Hz]
 [[nodiscard]] SampledResponse sampled_response(
     double centre, double half_width, double error, std::size_t most,
     const std::function<std::vector<std::complex<double>>(double)>& responses);
@@ -40,39 +41,40 @@ struct MetLeg {
   Vec3 from = Vec3::Zero(), to = Vec3::Zero();  ///< [m]
   Arrivals paths;                               ///< at the centre frequency
   double frequency = 0.0;                       ///< the centre [Hz]
-  PathLimits limits = {};                       ///< within which they were found
+  PathLimits limits = {};                       ///< limits of their search
 
-  /// Whether any has the amplitude of waves.
+  /// Whether any path has the amplitude of waves.
   [[nodiscard]] bool by_waves() const noexcept;
 };
 
-/// The leg that a met path belongs to: `known`, or one of its own where it was met so far from
-/// there that waves have another amplitude. \param path  number of the path in `known`
+/// Leg of a met path: `known`, or a leg of its own if it was met so far away that the amplitude of
+/// waves differs.   \param path  number of the path in `known`
 [[nodiscard]] PathOnLeg path_on_leg(const std::shared_ptr<const MetLeg>& known, std::size_t path,
                                     const Vec3& from, const MetPath& met);
 
-/// Whether its amplitudes change with frequency otherwise than by absorption: those of waves do,
-/// and those of rays off layers, off curves at several frequencies and off rough boundaries, but in
-/// three dimensions.
+/// Whether a leg's amplitudes depend on frequency by more than absorption. Those of waves do, and
+/// those of rays off layers, off curves at several frequencies and off rough boundaries. Rays in
+/// three dimensions count as independent of it.
 [[nodiscard]] bool changes_with_frequency(const PropagationPaths& paths, const MetLeg& leg);
 
-/// The amplitude of each path at another frequency; phases belong to the paths' delays at the
-/// centre. Those of waves hold what absorption changes, those of rays do not. \return [leg.paths]
+/// Amplitude of each path at another frequency, with phases for the delays at the centre.
+/// Amplitudes of waves include the change of absorption, those of rays do not.   \return
+/// [leg.paths]
 [[nodiscard]] std::vector<std::complex<double>> amplitudes_at(const PropagationPaths& paths,
                                                               const MetLeg& leg, double frequency);
 
-/// Half of the band about a pulse's centre in which paths are computed [Hz]: where its spectrum is
-/// less than 40 dB down, or twice as far as 99 % of its energy reach. Beyond it they are as at its
-/// edge.
+/// Half width of the band about a pulse's centre in which paths are computed [Hz]. It reaches to
+/// where the spectrum is 40 dB down, or twice as far as 99 % of the energy. Beyond it the
+/// amplitudes are those at its edge.
 [[nodiscard]] double response_half_band(const Pulse& pulse) noexcept;
 
-/// The same across a band. Paths by waves that the band does not resolve share their sum as at the
-/// centre. \param centre, half_width  [Hz]
+/// Amplitudes of a leg's paths across a band. Paths by waves that the band does not resolve share
+/// their sum as at the centre.   \param centre, half_width  [Hz]
 [[nodiscard]] SampledResponse leg_response(const PropagationPaths& paths, const MetLeg& leg,
                                            double centre, double half_width);
 
-/// Whether a band is so narrow that the leg's waves cannot change across it by a share `least` of
-/// their amplitude. \param half_width  [Hz]
+/// Whether a band is too narrow for the leg's waves to change across it by a share `least` of their
+/// amplitude.   \param half_width  [Hz]
 [[nodiscard]] bool too_narrow_to_change(const MetLeg& leg, double half_width, double least);
 
 }  // namespace asdic::detail

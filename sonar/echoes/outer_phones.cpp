@@ -7,7 +7,7 @@
 namespace asdic::detail {
 namespace {
 
-constexpr double tolerable = 0.0316;  // of the pressure: −30 dB
+constexpr double tolerable = 0.0316;  // difference of pressure: −30 dB
 
 double energy_of(const Arrivals& paths, bool waves_alone) {
   double sum = 0.0;
@@ -16,7 +16,7 @@ double energy_of(const Arrivals& paths, bool waves_alone) {
   return sum;
 }
 
-/// Whether plane waves may not carry what arrives from the reference point to the phones.
+/// Whether plane waves from the reference point may fail to describe the sound at the phones.
 bool is_to_be_judged(const PropagationPaths& paths, const Arrivals& arrived) {
   if (paths.layered())
     return energy_of(arrived, true) > tolerable * tolerable * energy_of(arrived, false);
@@ -24,7 +24,7 @@ bool is_to_be_judged(const PropagationPaths& paths, const Arrivals& arrived) {
                      [](const Arrival& path) { return path.bottom_bounces > 0; });
 }
 
-/// The first of those that lie outermost: up and down, north and south, east and west.
+/// Outermost phones up and down, north and south, east and west; the first of several.
 std::set<int> outermost(const std::vector<Vec3>& phones) {
   std::set<int> found;
   for (const int axis : {0, 1, 2}) {
@@ -36,8 +36,8 @@ std::set<int> outermost(const std::vector<Vec3>& phones) {
   return found;
 }
 
-/// Root of the energy of what arrives elsewhere beside what plane waves would bring there, over
-/// that of what arrives.
+/// Root of the energy of the difference between the paths at a place and the plane waves of the
+/// reference point there, over the energy at the reference point.
 double difference(const PropagationPaths& paths, const ArrivedLeg& reference,
                   const ArrivedLeg& elsewhere, double frequency) {
   const double c = paths.speed_at(reference.place);

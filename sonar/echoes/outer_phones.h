@@ -6,17 +6,17 @@
 
 namespace asdic::detail {
 
-/// A leg from one place, as it arrives at another.
+/// A leg and the place at which it arrives.
 struct ArrivedLeg {
   Leg leg;
-  Vec3 place = Vec3::Zero();  ///< where it arrives [m]
+  Vec3 place = Vec3::Zero();  ///< place of arrival [m]
 };
 
-/// Whether the paths at an array's reference point, as plane waves, are what its phones receive,
-/// curvature of fronts apart (is_plane_wave() looks at that): where waves carry some of the energy,
-/// whose amplitude changes within wavelengths, and over slopes, where a bounce moves with the
-/// phone. Paths are found to the array's outermost phones: what they bring is to differ by −30 dB
-/// at most, at the highest frequency that is received. Source: docs/theory/echoes.md, "Phones"
+/// Whether the paths to an array's reference point, as plane waves, describe the sound at its
+/// phones, apart from the curvature of fronts (is_plane_wave()). They may not where waves carry
+/// some of the energy, because their amplitude changes within wavelengths, and over slopes, where a
+/// bounce moves with the phone. The paths to the array's outermost phones then have to agree to −30
+/// dB at the highest received frequency. Source: docs/theory/echoes.md, "Phones"
 /// \param at_phone  finds the leg to a phone
 [[nodiscard]] bool is_alike_at_phones(const EchoContext& context, const ArrivedLeg& reference,
                                       const std::function<ArrivedLeg(int phone)>& at_phone);

@@ -35,7 +35,8 @@ class PeakSearch {
     }
     std::sort(echoes_.begin(), echoes_.end(),
               [](const Echo& a, const Echo& b) { return a.begin < b.begin; });
-    // The envelope holds frequencies up to the band of one echo and their Doppler shifts apart.
+    // The envelope has frequencies up to the band of one echo plus the difference of the Doppler
+    // shifts.
     step_ = 0.25 / (recorded.half_band() * highest + 0.5 * frequency_ * (highest - lowest));
     weigh();
   }
@@ -51,13 +52,13 @@ class PeakSearch {
   }
 
  private:
-  static constexpr std::size_t width = 64;             // samples of a block
-  static constexpr std::size_t looked_at = width + 2;  // with a neighbour on either side
+  static constexpr std::size_t width = 64;             // samples per block
+  static constexpr std::size_t looked_at = width + 2;  // and a neighbour on either side
 
   struct Echo {
     const EchoPath* path;
-    double begin, end;  // between which it is received [s]
-    double most = 0.0;  // its largest envelope, at most
+    double begin, end;  // times between which it is received [s]
+    double most = 0.0;  // bound of its envelope
   };
   struct Block {
     double bound;
@@ -66,7 +67,7 @@ class PeakSearch {
 
   /// Bounds every echo by the largest envelope of the pulse.
   void weigh() {
-    constexpr double between = 1.05;  // two samples, where one is 0.25/half_band from the next
+    constexpr double between = 1.05;  // allowance for peaks between samples 0.25/half_band apart
     double largest = 0.0;
     for (double u = -recorded_.half_duration(); u < recorded_.half_duration(); u += step_)
       largest = std::max(largest, between * std::abs(recorded_.at(u)));
@@ -91,7 +92,7 @@ class PeakSearch {
       if (echo->end >= first) f(*echo);
   }
 
-  /// All blocks with sound in them, those that may be loudest first.
+  /// Blocks in which an echo is received, by falling bound of their envelope.
   [[nodiscard]] std::vector<Block> blocks() const {
     std::vector<Block> found;
     std::int64_t next = 0;
@@ -137,7 +138,7 @@ class PeakSearch {
       const double before = std::norm(sum[j - 1]), here = std::norm(sum[j]),
                    after = std::norm(sum[j + 1]), bend = before - 2.0 * here + after;
       power = std::max(power, here);
-      if (here >= before && here >= after && bend < 0.0)  // the top of a parabola
+      if (here >= before && here >= after && bend < 0.0)  // top of a parabola
         power = std::max(power, here - 0.125 * (before - after) * (before - after) / bend);
     }
     return std::sqrt(power);
@@ -146,7 +147,7 @@ class PeakSearch {
   const BandLimitedPulse& recorded_;
   double half_pulse_, frequency_;
   std::vector<Echo> echoes_;
-  double longest_ = 0.0, step_ = 1.0;  // of an echo; of the samples [s]
+  double longest_ = 0.0, step_ = 1.0;  // longest echo and step of the samples [s]
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <numbers>
 #include <optional>
 #include <unordered_map>
@@ -16,12 +17,12 @@
 namespace asdic::detail {
 namespace {
 
-/// The legs of paths whose amplitudes change with frequency otherwise than by absorption, each
-/// once, as functions of a frequency.
+/// Responses of the legs whose amplitudes depend on frequency by more than absorption, once for
+/// each leg.
 template <class Response>
 class ChangingLegs {
  public:
-  /// \param make  the response of a leg
+  /// \param make  makes the response of a leg
   template <class Make>
   ChangingLegs(const PropagationPaths& paths, std::span<const EchoPath> echoes, const Make& make) {
     for (const EchoPath& echo : echoes)
@@ -30,7 +31,7 @@ class ChangingLegs {
           if (changes_with_frequency(paths, *on.leg)) at->second = make(*on.leg);
   }
 
-  /// Null: of absorption alone.
+  /// Response of a leg; null if only absorption changes it.
   [[nodiscard]] const Response* of(const PathOnLeg& on) const {
     const std::optional<Response>& found = legs_.at(on.leg.get());
     return found ? &*found : nullptr;
@@ -40,11 +41,11 @@ class ChangingLegs {
   std::unordered_map<const MetLeg*, std::optional<Response>> legs_;
 };
 
-/// What a path's amplitude is at another frequency, over that at the centre. \param at_frequency
+/// Ratio of a path's amplitude at another frequency to that at the centre.   \param legs
 /// amplitudes of each leg's paths
 std::complex<double> response_of(const EchoPath& path, const BandPart& part,
                                  std::span<const std::span<const std::complex<double>>> legs) {
-  double by_rays = path.response.path_length;  // [m]
+  double by_rays = path.response.path_length;  // length of legs by rays [m]
   std::complex<double> product = 1.0;
   for (std::size_t i = 0; i < path.legs.size(); ++i) {
     if (legs[i].empty()) continue;
@@ -73,8 +74,8 @@ BandPart band_part(const EchoContext& context, const Transmitter& projector, dou
               nepers_per_metre(context, frequency) - nepers_per_metre(context, context.frequency)};
 }
 
-/// A pulse's band and the few frequencies that serve it, for paths. docs/theory/synthesis.md,
-/// "Across the band"
+/// Frequencies that represent a pulse's band for given paths. docs/theory/synthesis.md, "Across the
+/// band"
 class WideBand {
  public:
   /// \param longest  path there and back [m]
@@ -91,7 +92,8 @@ class WideBand {
         legs_(context.paths, paths, [&](const MetLeg& leg) {
           return leg_response(context.paths, leg, centre_, half_width_);
         }) {
-    // What absorption and the transmitter's pattern need, and the degree of what legs do.
+    // The number of nodes is that for absorption and the transmitter's pattern, plus the degree of
+    // the legs.
     const double nepers = 0.5 * longest *
                           std::abs(nepers_per_metre(context, centre_ + half_width_) -
                                    nepers_per_metre(context, std::max(1.0, centre_ - half_width_)));
@@ -146,7 +148,7 @@ Baseband narrow_band_sound(const Synthesizer& synthesizer, std::span<const EchoP
       curved.push_back({path.received, *path.curve});
     else
       straight.push_back(path.received);
-  // Of a part of a record that holds no echo: the transforms of nothing take time as well.
+  // A part of a record may hold no echo; transforms of nothing would take time as well.
   Baseband sound = straight.empty() ? synthesizer.silence(phones.size())
                                     : synthesizer.baseband(straight, phones);
   synthesizer.add_curved(curved, phones, sound);
@@ -192,13 +194,27 @@ bool across_the_band(const EchoContext& context, const Transmitter& projector,
          tolerable_change;
 }
 
+SparseSound by_band(const EchoContext& context, const Transmitter& projector,
+                    std::vector<EchoPath> paths) {
+  std::stable_sort(paths.begin(), paths.end(),
+                   [](const EchoPath& a, const EchoPath& b) { return a.target < b.target; });
+  SparseSound sorted;
+  for (auto first = paths.begin(), last = first; first != paths.end(); first = last) {
+    last = std::find_if(first, paths.end(),
+                        [&](const EchoPath& path) { return path.target != first->target; });
+    std::vector<EchoPath>& into =
+        across_the_band(context, projector, {first, last}) ? sorted.wide : sorted.narrow;
+    into.insert(into.end(), std::make_move_iterator(first), std::make_move_iterator(last));
+  }
+  return sorted;
+}
+
 Baseband wide_band_sound(const EchoContext& context, const Transmitter& projector,
                          std::span<const EchoPath> paths, std::span<const Vec3> phones,
-                         const Recording& recording, double max_doppler) {
+                         const Recording& recording, double max_doppler, Baseband more) {
   double longest = 0.0;
   for (const EchoPath& path : paths) longest = std::max(longest, path.response.path_length);
   const WideBand band(context, projector, paths, longest, recording, max_doppler);
-  Baseband all;
   std::vector<EchoPath> filtered(paths.begin(), paths.end());
   for (std::size_t k = 0; k < band.nodes().frequencies.size(); ++k) {
     const BandPart at = band.part(k);
@@ -222,13 +238,13 @@ Baseband wide_band_sound(const EchoContext& context, const Transmitter& projecto
     }
     Baseband sound = narrow_band_sound(
         Synthesizer(*context.pulse, recording, max_doppler, at.filter), filtered, phones);
-    if (k == 0)
-      all = std::move(sound);
+    if (more.channels == 0)
+      more = std::move(sound);
     else
-      std::transform(sound.values.begin(), sound.values.end(), all.values.begin(),
-                     all.values.begin(), std::plus<>{});
+      std::transform(sound.values.begin(), sound.values.end(), more.values.begin(),
+                     more.values.begin(), std::plus<>{});
   }
-  return all;
+  return more;
 }
 
 }  // namespace asdic::detail

@@ -9,17 +9,17 @@
 
 namespace asdic::detail {
 
-/// One of the frequencies that serve a pulse's band.
+/// One of the frequencies that represent a pulse's band.
 struct BandPart {
   double frequency = 0.0;                ///< [Hz]
-  std::function<double(double)> filter;  ///< of the pulse, over the frequency from its centre [Hz]
-  BeamPattern pattern;                   ///< of the transmitter at that frequency
-  double more_nepers_per_metre = 0.0;    ///< of absorption than at the centre
+  std::function<double(double)> filter;  ///< factor of the pulse at a distance from its centre [Hz]
+  BeamPattern pattern;                   ///< pattern of the transmitter at that frequency
+  double more_nepers_per_metre = 0.0;    ///< absorption beyond that at the centre
 };
 
-/// What a change across the band has to be to matter, of an echo's pressure at the edges of the
-/// pulse's band (99 % of its energy): 0.5 dB. Over all of the band it is half of that, and the
-/// waveform is the same to −30 dB.
+/// Smallest change that matters, relative to an echo's pressure, at the edges of the pulse's band
+/// (99 % of its energy): 0.5 dB. Over the whole band it is about half of that, and the waveform is
+/// right to −30 dB.
 inline constexpr double tolerable_change = 0.06;
 
 /// Root of the energy of what paths carry at either edge of a band beside what they carry at the
@@ -34,26 +34,39 @@ inline constexpr double tolerable_change = 0.06;
 [[nodiscard]] bool across_the_band(const EchoContext& context, const Transmitter& projector,
                                    std::span<const EchoPath> paths);
 
-/// The parts of a pulse's band by which echoes of paths like these are received. \param longest
-/// path there and back [m]
+/// Echoes and direct blasts at an array, by how they are received.
+struct SparseSound {
+  std::vector<EchoPath> narrow;  ///< with the amplitudes of the pulse's centre frequency
+  std::vector<EchoPath> wide;    ///< by wide_band_sound()
+};
+
+/// Sorts echoes and blasts by how they are received. Each target is judged by its own echoes, and
+/// the blast by itself, so the echoes of several targets are the sum of each target's own.
+[[nodiscard]] SparseSound by_band(const EchoContext& context, const Transmitter& projector,
+                                  std::vector<EchoPath> paths);
+
+/// Parts of a pulse's band by which echoes along paths like these are received.   \param longest
+/// longest path there and back [m]
 [[nodiscard]] std::vector<BandPart> band_parts(const EchoContext& context,
                                                const Transmitter& projector,
                                                std::span<const EchoPath> paths, double longest,
                                                const Recording& recording, double max_doppler);
 
-/// Echoes and direct blasts at the phones of an array, amplitudes as at the pulse's centre
-/// frequency. \param phones  [n] from the array's reference point [m]
+/// Echoes and direct blasts at the phones of an array, with the amplitudes at the pulse's centre
+/// frequency.   \param phones  [n] from the array's reference point [m]
 [[nodiscard]] Baseband narrow_band_sound(const Synthesizer& synthesizer,
                                          std::span<const EchoPath> paths,
                                          std::span<const Vec3> phones);
 
-/// The same with the water's absorption, the transmitter's pattern, the boundaries' reflection and
-/// the amplitudes of waves at every frequency of the pulse: K pulses, each passed through one of
-/// Lagrange's polynomials over the band, each with the amplitudes of its own frequency. K times the
-/// cost. Source: docs/theory/synthesis.md, "Across the band". \param projector  as it pings
+/// Echoes and direct blasts with the water's absorption, the transmitter's pattern, the boundaries'
+/// reflection and the amplitudes of waves at every frequency of the pulse. They are the sum of K
+/// pulses, each passed through one of Lagrange's polynomials over the band, with the amplitudes at
+/// its own frequency. The cost is K times that of narrow_band_sound(). Source:
+/// docs/theory/synthesis.md, "Across the band".   \param projector  as it pings
+/// \param more  sound of the same recording to which it is added
 [[nodiscard]] Baseband wide_band_sound(const EchoContext& context, const Transmitter& projector,
                                        std::span<const EchoPath> paths,
                                        std::span<const Vec3> phones, const Recording& recording,
-                                       double max_doppler);
+                                       double max_doppler, Baseband more = {});
 
 }  // namespace asdic::detail

@@ -2,21 +2,30 @@
 
 #include <cmath>
 
+#include "core/mixed_bits.h"
 #include "core/random.h"
 
 namespace asdic::detail {
 namespace {
 
 /// Distinct for all looks of one kind: 16 bits each.
-std::uint64_t entity(int target, int highlight, const Look& look) {
+std::uint64_t entity(std::uint64_t target, int highlight, const Look& look) {
   const auto word = [](int value, int place) {
     return static_cast<std::uint64_t>(value & 0xffff) << (16 * place);
   };
-  return word(target, 0) | word(highlight + 1, 1) | word(look.transmitter, 2) |
-         word(look.platform, 3);
+  return mixed(target, word(highlight + 1, 1) | word(look.transmitter, 2) | word(look.platform, 3));
 }
 
 }  // namespace
+
+std::uint64_t target_identity(const Scenario& scenario, int target) {
+  const std::string& name = scenario.targets[static_cast<std::size_t>(target)].name;
+  std::uint64_t identity = 0;
+  for (int before = 0; before < target; ++before)
+    if (scenario.targets[static_cast<std::size_t>(before)].name == name) ++identity;
+  for (const char letter : name) identity = mixed(identity, static_cast<unsigned char>(letter));
+  return identity;
+}
 
 std::complex<double> fluctuation(const Scenario& scenario, int target, int highlight,
                                  const Look& look) {
@@ -26,7 +35,8 @@ std::complex<double> fluctuation(const Scenario& scenario, int target, int highl
       one.fluctuation == Fluctuation::swerling_1 || one.fluctuation == Fluctuation::swerling_3;
   const int realisation = by_scan ? (look.own_ping - 1) / one.scan_pings : look.ping;
   RandomStream draw(scenario.seed, Draw::target_fluctuation,
-                    static_cast<std::uint32_t>(realisation), entity(target, highlight, look));
+                    static_cast<std::uint32_t>(realisation),
+                    entity(target_identity(scenario, target), highlight, look));
   const std::complex<double> w = draw.complex_normal();
   if (one.fluctuation == Fluctuation::swerling_1 || one.fluctuation == Fluctuation::swerling_2)
     return w;  // |w|² is exponential

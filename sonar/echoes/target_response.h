@@ -1,5 +1,6 @@
 #pragma once
 #include <complex>
+#include <cstdint>
 #include <vector>
 
 #include "sonar/scenario/scenario.h"
@@ -13,6 +14,10 @@ struct Look {
   int ping = 1;      ///< of the run, counted from 1
   int own_ping = 1;  ///< of the transmitter's own pings, counted from 1
 };
+
+/// Number that names a target in its draws. It follows from the target's name, so it does not
+/// depend on the target's place in the list. Targets of equal names are numbered in their order.
+[[nodiscard]] std::uint64_t target_identity(const Scenario& scenario, int target);
 
 /// Factor of a highlight's amplitude, E|w|² = 1 (1 where it does not fluctuate).
 [[nodiscard]] std::complex<double> fluctuation(const Scenario& scenario, int target, int highlight,

@@ -162,7 +162,7 @@ class MovingLeg {
 
 class TwoSteps {
  public:
-  /// \param part  of the band; null: the pulse's centre stands for it
+  /// \param part  part of the band; null: amplitudes at the centre serve the whole band
   TwoSteps(const EchoContext& context, const ManyEchoes& many, const TwoStepReceivers& receivers,
            const Recording& recording, double max_doppler, const BandPart* part)
       : context_(context),
@@ -281,7 +281,7 @@ class TwoSteps {
         context_, moving_, [&](double since) { return geometry_.source_at(since); },
         {.track = target_.track},
         mixed(static_cast<std::uint64_t>(geometry_.sent().transmitter),
-              mixed(1, static_cast<std::uint64_t>(index_))));
+              mixed(1, target_identity(scenario_, index_))));
     struct Piece {
       BandLimitedPulse wave;
       Returns returns;
@@ -358,7 +358,7 @@ class TwoSteps {
     const Carried receiver = geometry_.receiver(array, channel);
     MovingLeg leg(
         context_, moving_, [&](double since) { return target_at(since); }, receiver,
-        mixed(static_cast<std::uint64_t>(index_), mixed(2, static_cast<std::uint64_t>(array))));
+        mixed(target_identity(scenario_, index_), mixed(2, static_cast<std::uint64_t>(array))));
     const Vec3 x =
         channel < 0 ? Vec3::Zero() : receivers_.phones[static_cast<std::size_t>(channel)];
     for_each_piece(
@@ -412,9 +412,9 @@ class TwoSteps {
   Recording recording_;
   double max_doppler_;
   double latest_;         // end of the record [s]
-  const BandPart* part_;  // null: the pulse's centre stands for the band
+  const BandPart* part_;  // null: amplitudes at the centre serve the band
   MovingPaths moving_;    // at the part's frequency
-  std::size_t places_;    // of the target: its highlights, or itself
+  std::size_t places_;    // number of the target's highlights, or 1
 };
 
 }  // namespace

@@ -23,7 +23,7 @@ struct TwoStepReceivers {
 /// path). What rough boundaries scatter is drawn for each leg by itself.
 /// Source: docs/theory/echoes.md, "Many paths"
 /// \param many  as target_echoes() found them   \param followed  bounces off either boundary
-/// \param band  band_parts(); none: the pulse's centre stands for it
+/// \param band  band_parts(); empty: amplitudes at the centre serve the whole band
 /// \return [phones] over the pulse's peak at 1 m
 [[nodiscard]] Baseband two_step_echo(const EchoContext& context, const ManyEchoes& many,
                                      const TwoStepReceivers& receivers, const Recording& recording,

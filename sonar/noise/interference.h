@@ -25,9 +25,9 @@ namespace asdic::detail {
 /// Nodes lie on the grid of absolute time in a stream: its parts join without a seam, and do not
 /// depend on where they begin.
 ///
-/// Losses are those at the first pulse's centre; with `band = "wide"` they are found at frequencies
-/// f_k of the recorded band, and a path's amplitude is straight between them: the signal is a sum
-/// of parts q_k, each through a hat over f_k, with an amplitude of its own.
+/// Losses are those at the first pulse's centre. With `band = "wide"` they are found at frequencies
+/// f_k of the recorded band and interpolated linearly: the signal is a sum of parts q_k, each
+/// through a hat over f_k, with an amplitude of its own.
 ///
 /// What rough boundaries scatter about a path is received beside it, by a few paths of equal
 /// strength (reverb/scattering/forward_scatter.h). docs/theory/interference.md

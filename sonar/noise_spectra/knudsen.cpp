@@ -32,7 +32,10 @@ std::string note_of_wind(double wind_speed) {
 }  // namespace
 
 void KnudsenNoise::describe(Fields& field) {
-  if (field.finds("wind_speed")) field.excludes("wind_speed", {"sea_state"});
+  if (const Only with(field, field.finds("wind_speed") || field.exhaustive(),
+                      {.key = "wind_speed"});
+      with)
+    field.excludes("wind_speed", {"sea_state"});
   if (field.reads() || field.exhaustive()) {  // files may give the wind in its place
     double wind_speed = 0.0;
     field(inherited("wind_speed", "environment.wind_speed"), wind_speed, quantity::wind_speed,

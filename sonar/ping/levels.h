@@ -12,8 +12,8 @@
 
 namespace asdic::detail {
 
-/// Mean-square pressure over all phones in steps of time, the parts of the sound resolved: echoes
-/// as they are received, reverberation and noise in the mean.
+/// Mean-square pressure over all phones in steps of time, for each part of the sound: echoes as
+/// received, expected reverberation and noise.
 class LevelMeter {
  public:
   /// \param pulse_duration  the steps' length, at most 50 ms and at least a 20 000th of the record
@@ -21,7 +21,7 @@ class LevelMeter {
 
   /// \param peak_pressure  of the source at 1 m [Pa], the unit of the baseband
   void add_echo(const Baseband& received, double peak_pressure);
-  /// \param share  of all phones, that belong to the array which receives it
+  /// \param share  share of all phones that belong to the receiving array
   void add_reverberation(const PingReverberation& sea, double peak_pressure, double share,
                          PropagationMemory& memory);
   void add_noise(double variance);  ///< of every sample [Pa²]
@@ -29,7 +29,7 @@ class LevelMeter {
   [[nodiscard]] LevelSeries series() const { return series_; }
 
  private:
-  double start_;  // of the record [s]
+  double start_;  // beginning of the record [s]
   LevelSeries series_;
 };
 
@@ -41,14 +41,14 @@ struct SummaryParts {
   std::function<double(int array, double time)> reverberation_db;
 };
 
-/// What a ping's echoes come to, one per target: the strongest path pair, at the array that
-/// receives it, against reverberation and noise at its time.
+/// Summary of a ping's echoes, one per target: the strongest pair of paths at the array that
+/// receives it, with reverberation and noise at its time.
 [[nodiscard]] std::vector<TargetSummary> summarise(const PingRecord& record,
                                                    const Scenario& scenario, const Pulse& pulse,
                                                    const SummaryParts& parts);
 
 /// Warning of a target whose loudest echo the ping's record does not hold completely; empty: none.
-/// \param pulse  that was sent
+/// \param pulse  the pulse that was sent
 [[nodiscard]] std::string echo_beside_record(const PingRecord& record, const Scenario& scenario,
                                              const Pulse& pulse);
 

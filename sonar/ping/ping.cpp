@@ -366,18 +366,22 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
   PingRecord record = blank_record(geometry);
   MemoryBudget budget = budget_;
   budget.take(record_need(scenario_, most_samples()));
-  std::vector<std::vector<EchoPath>> sparse;  // [arrays]
-  std::vector<bool> wide;                     // [arrays] received across the band
+  std::vector<SparseSound> sparse;  // [arrays]
   for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
     const EchoContext context = echo_context(emission, static_cast<int>(a), record);
-    sparse.push_back(sparse_returns(context, emission, record));
-    wide.push_back(across_the_band(context, emission.projector, sparse.back()));
+    sparse.push_back(
+        by_band(context, emission.projector, sparse_returns(context, emission, record)));
   }
   const double longest = 2.0 * emission.pulse.duration() + 1.0;  // of what a return sounds [s]
-  for (std::vector<EchoPath>& of_array : sparse)
-    std::erase_if(of_array, [&](const EchoPath& echo) {
-      return !heard.meets(echo.received.delay - 1.0, echo.received.delay + longest);
-    });
+  const auto unheard = [&](const EchoPath& echo) {
+    return !heard.meets(echo.received.delay - 1.0, echo.received.delay + longest);
+  };
+  bool wide = false;  // whether any echo is received across the band
+  for (SparseSound& of_array : sparse) {
+    wide = wide || !of_array.wide.empty();
+    std::erase_if(of_array.narrow, unheard);
+    std::erase_if(of_array.wide, unheard);
+  }
   if (part) {
     const SampleRange wanted = part(record);
     record.recording.start += static_cast<double>(wanted.first) / record.recording.sample_rate;
@@ -396,8 +400,7 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
     record.band = {static_cast<int>(band->points().size()), band->reached()};
   }
   budget.take(synthesis_need(filtered ? *filtered : synthesizer));
-  if (scenario_.propagation.band == BandOfLosses::automatic &&
-      std::find(wide.begin(), wide.end(), true) != wide.end())
+  if (scenario_.propagation.band == BandOfLosses::automatic && wide)
     budget.take(band_need(synthesizer, channels_of(scenario_)));
   const std::size_t samples =
       record.phones.size() * record.recording.samples * record.recording.components();
@@ -425,9 +428,12 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
     step(0.0, "echoes");
     const std::vector<Vec3>& phones = geometry.phones(array);
     const EchoContext context = echo_context(emission, array, record);
-    Baseband of_array = wide[a] ? wide_band_sound(context, emission.projector, sparse[a], phones,
-                                                  record.recording, max_doppler_)
-                                : narrow_band_sound(synthesizer, sparse[a], phones);
+    Baseband of_array;
+    if (!sparse[a].narrow.empty() || sparse[a].wide.empty())
+      of_array = narrow_band_sound(synthesizer, sparse[a].narrow, phones);
+    if (!sparse[a].wide.empty())
+      of_array = wide_band_sound(context, emission.projector, sparse[a].wide, phones,
+                                 record.recording, max_doppler_, std::move(of_array));
     for (const ManyEchoes& many : record.many_echoes)
       if (many.array == array) budget.take(two_step_need(many, of_array));
     add_many_echoes(context, emission, phones, record, of_array);

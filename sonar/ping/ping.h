@@ -156,7 +156,8 @@ class PingSimulator {
   [[nodiscard]] double peak_of(const Emission& emission, int array,
                                std::span<const EchoPath> echoes, PingRecord& record) const;
   [[nodiscard]] Emission emit(const Transmission& sent, int ping) const;
-  /// Parts of the pulse's band for echoes of many paths; empty: the centre stands for the band.
+  /// Parts of the pulse's band for echoes of many paths; empty: amplitudes at the centre serve the
+  /// whole band.
   /// \param loudest  the loudest of these echoes   \param last  time of the last one [s]
   [[nodiscard]] std::vector<BandPart> band_of(const EchoContext& context, const Emission& emission,
                                               const PingRecord& record,

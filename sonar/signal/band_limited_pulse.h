@@ -51,6 +51,9 @@ class BandLimitedPulse {
   double centre_frequency_ = 0.0, half_duration_ = 0.0, half_band_ = 0.0;
 };
 
+/// Half width about the centre frequency outside which lies a share of a pulse's energy [Hz].
+[[nodiscard]] double half_band_of_energy(const BandLimitedPulse& pulse, double left_out);
+
 /// The pulse through a filter, in the band that a recording holds under every Doppler factor.
 /// \param max_doppler  largest |η − 1|   \param filter  as BandLimitedPulse takes it
 [[nodiscard]] BandLimitedPulse recorded_pulse(const Pulse& sent, const Recording& record,

@@ -146,23 +146,25 @@ class FineSpectrum {
 };
 
 /// What a piece needs to know of the grid and of the pulse.
+///
+/// Sample number i is that of the delay i/rate since the ping, in whatever record, and the sound's
+/// carrier is the pulse's own frequency.
 struct StreamGrid {
   double rate = 1.0;                  // [Hz]
-  double first = 0.0;                 // delay of sample 0 [s]
-  std::ptrdiff_t begin = 0, end = 0;  // of impulses
-  double carrier = 0.0;               // [Hz]
+  std::ptrdiff_t begin = 0, end = 0;  // numbers of impulses that a record may receive
   std::size_t guard = 0;              // samples by which a pulse hangs over its impulse
   double half_band = 0.0;             // of the sound about the carrier [Hz]
-  double centre = 0.0;                // frequency of the pulse [Hz]
+  double centre = 0.0;                // frequency of the pulse, and carrier [Hz]
+  double turn = 0.0;                  // record's carrier less that frequency [Hz]
   double own_half_band = 0.0;         // of the pulse about it, as any stream's factor has it [Hz]
   double pulse_duration = 1.0;        // [s]
 
   /// The sample at or before a delay.
   [[nodiscard]] std::ptrdiff_t before(double delay) const noexcept {
-    return std::clamp(static_cast<std::ptrdiff_t>(std::floor((delay - first) * rate)), begin, end);
+    return static_cast<std::ptrdiff_t>(std::floor(delay * rate));
   }
   [[nodiscard]] double delay_of(std::ptrdiff_t sample) const noexcept {
-    return first + static_cast<double>(sample) / rate;
+    return static_cast<double>(sample) / rate;
   }
 };
 
@@ -191,7 +193,7 @@ class StretchedPulses {
     const std::complex<float>* values = nullptr;
   };
   [[nodiscard]] Shifted at(double doppler) {
-    const double shift = (grid_.centre * doppler - grid_.carrier) / spacing_;
+    const double shift = grid_.centre * (doppler - 1.0) / spacing_;
     const double bin = std::floor(shift);
     const long place = std::min(std::lround((shift - bin) * places_), std::lround(places_));
     const long segment = std::lround((doppler - 1.0) / segment_);
@@ -272,12 +274,10 @@ Piece piece_of(const ReverberationStreams& sea, const StreamBlock& block, const 
                const StreamGrid& grid, std::span<const Vec3> phones, const CovarianceDraw& draw) {
   const double block_begin = static_cast<double>(block.begin) * sea.bin,
                block_end = static_cast<double>(block.end) * sea.bin;
-  const std::ptrdiff_t begin = grid.before(block_begin),
-                       end = std::min(grid.end, grid.before(block_end) + 1);
+  const std::ptrdiff_t begin = grid.before(block_begin), end = grid.before(block_end) + 1;
   Piece piece;
-  const double until = std::min(block_end, grid.delay_of(end));
-  // Blocks that were received before the record begins have no impulse on its grid.
-  if (begin >= end || block.first == block.last || !(until > grid.delay_of(begin))) return piece;
+  // Blocks that were received before the record begins have no impulse that it receives.
+  if (end <= grid.begin || begin >= grid.end || block.first == block.last) return piece;
   const auto n = static_cast<std::size_t>(end - begin);
   const std::size_t length = grid_length(static_cast<double>(n + 2 * grid.guard));
   const double spacing = grid.rate / static_cast<double>(length);  // of bins [Hz]
@@ -289,7 +289,12 @@ Piece piece_of(const ReverberationStreams& sea, const StreamBlock& block, const 
   const std::size_t own_length = grid_length(static_cast<double>(own));
   const double step = 1.0 / (spacing * static_cast<double>(own_length));  // between impulses [s]
   const double origin = grid.delay_of(begin);
-  PowerOfSteps power_of(block, sea.bin, origin, until, step);
+  PowerOfSteps power_of(block, sea.bin, origin, block_end, step);
+  // All of the block is drawn, whatever part of it is received.
+  const auto received_step = [&](std::size_t j) {
+    const double delay = origin + (static_cast<double>(j) + 0.5) * step;
+    return delay >= grid.delay_of(grid.begin) && delay < grid.delay_of(grid.end);
+  };
   const ComplexFft<float> own_fft(own_length);
   Scratch noise_of(own_length);
   std::vector<float> power(power_of.steps()), normals(2 * power_of.steps());
@@ -309,13 +314,13 @@ Piece piece_of(const ReverberationStreams& sea, const StreamBlock& block, const 
     const std::ptrdiff_t place =
         static_cast<std::ptrdiff_t>(stride + highest) + stretched.first;  // in the rows received
     if (place < 0 || place > static_cast<std::ptrdiff_t>(bins + stride)) continue;
-    const double lowest = grid.carrier + spacing * static_cast<double>(stretched.first);
+    const double lowest = grid.centre + spacing * static_cast<double>(stretched.first);
     power_of.find(&sea.intensity[stream.first], power);
     for (std::size_t noise = 0; noise < part.weight.size(); ++noise) {
       if (part.weight[noise][0] == 0.0 && part.weight[noise][1] == 0.0) continue;
       fill_normal(normals, draw.seed, Draw::covariance_weight, draw.ping, stream.entity + noise);
       for (std::size_t j = 0; j < power.size(); ++j) {
-        const float root = std::sqrt(0.5F * power[j]);
+        const float root = received_step(j) ? std::sqrt(0.5F * power[j]) : 0.0F;
         noise_of[j] = {root * normals[2 * j], root * normals[2 * j + 1]};
       }
       std::fill(noise_of.data() + power.size(), noise_of.data() + own_length, 0.0F);
@@ -351,6 +356,13 @@ Piece piece_of(const ReverberationStreams& sea, const StreamBlock& block, const 
   piece.values.resize(phones.size() * piece.samples);
   const ComplexFft<float> fft(length);
   Scratch scratch(length);
+  std::vector<std::complex<float>> turned;  // to the record's carrier, since the ping
+  for (std::size_t i = 0; i < piece.samples; ++i) {
+    double c = 1.0, s = 0.0;
+    const double delay = grid.delay_of(piece.first + static_cast<std::ptrdiff_t>(i));
+    rotate_back(grid.turn * (delay + 0.5 * grid.pulse_duration), c, s);
+    turned.emplace_back(std::complex<double>(c, s));
+  }
   for (std::size_t p = 0; p < phones.size(); ++p) {
     std::fill_n(scratch.data(), length, 0.0F);
     const float *const re = received.re(p) + stride, *const im = received.im(p) + stride;
@@ -358,8 +370,8 @@ Piece piece_of(const ReverberationStreams& sea, const StreamBlock& block, const 
       scratch[k < highest ? length - highest + k : k - highest] = {re[k], im[k]};
     fft.inverse(scratch.data());
     std::complex<float>* const to = piece.values.data() + p * piece.samples;
-    std::copy_n(scratch.data() + (length - grid.guard), grid.guard, to);
-    std::copy_n(scratch.data(), n + grid.guard, to + grid.guard);
+    for (std::size_t i = 0; i < piece.samples; ++i)
+      to[i] = turned[i] * scratch[i < grid.guard ? length - grid.guard + i : i - grid.guard];
   }
   return piece;
 }
@@ -368,27 +380,19 @@ Piece piece_of(const ReverberationStreams& sea, const StreamBlock& block, const 
 
 Synthesizer::StreamBand Synthesizer::band_of(const ReverberationStreams& sea) const {
   constexpr double left_out = 1e-6;  // of a pulse's energy
-  const Plan& plan = *plan_;
-  const double period = static_cast<double>(plan.length) / plan.rate;
-  const auto pulse = covariance_spectra(chebyshev_nodes(plan.carrier, 0.0, 1));
-  const auto power = [&](std::size_t i) { return static_cast<double>(std::norm((*pulse)[i])); };
-  const std::size_t middle = pulse->size() / 2;
-  double all = power(middle);
-  for (std::size_t k = 1; k <= middle; ++k) all += power(middle - k) + power(middle + k);
-  const std::size_t still = outermost_pair(
-      middle, left_out * all, [&](std::size_t k) { return power(middle - k) + power(middle + k); });
+  const BandLimitedPulse& pulse = plan_->pulses.front();
   double most = 0.0;
   for (const ReverberationStreams::Part& part : sea.parts)
     most = std::max(most, std::abs(part.doppler - 1.0));
-  const double one = static_cast<double>(still + 1) * (1.0 + most);
-  return {.one = one,
-          .all = std::min(static_cast<double>(plan.highest_bin),
-                          std::ceil(one + most * plan.carrier * period))};
+  const double one = half_band_of_energy(pulse, left_out) * (1.0 + most);
+  return {.one = one, .all = one + most * pulse.centre_frequency()};
 }
 
 Baseband Synthesizer::silence(const ReverberationStreams& sea, std::size_t phones,
                               std::vector<std::complex<float>> memory) const {
-  return silence_of_band(phones, 2.0 * band_of(sea).all + 1.0, std::move(memory));
+  const double period = static_cast<double>(plan_->length) / plan_->rate;
+  const double bins = std::ceil(band_of(sea).all * period + 1.0);  // the carrier is on a bin
+  return silence_of_band(phones, 2.0 * bins + 1.0, std::move(memory));
 }
 
 void Synthesizer::add_streams(const ReverberationStreams& sea, std::span<const Vec3> phones,
@@ -399,23 +403,24 @@ void Synthesizer::add_streams(const ReverberationStreams& sea, std::span<const V
   const std::size_t fine = baseband.samples;
   const double period = static_cast<double>(plan.length) / plan.rate;
   const StreamBand band = band_of(sea);
-  const double half_band = band.all;  // [bins]
-  const std::size_t length = std::min(fine, grid_length(2.0 * half_band + 2.0));
-  const double rate = static_cast<double>(length) / period;
-  const double before = static_cast<double>(plan.lead) / plan.rate;
+  const auto [rate, length] = plan.clock(2.0 * band.all);
   const BandLimitedPulse& pulse = plan.pulses.front();
+  // The period begins with the first number at its first moment or after.
+  const double origin = plan.recording.start - 0.5 * plan.pulse_duration,
+               before = static_cast<double>(plan.lead) / plan.rate;
+  const auto first = static_cast<std::ptrdiff_t>(std::ceil(origin * rate));
   const StreamGrid grid{
       .rate = rate,
-      .first = plan.recording.start - 0.5 * plan.pulse_duration,
-      .begin = -static_cast<std::ptrdiff_t>(before * rate),
-      .end = static_cast<std::ptrdiff_t>((plan.last_position / plan.rate - before) * rate) + 1,
-      .carrier = plan.carrier,
+      .begin = static_cast<std::ptrdiff_t>(std::ceil((origin - before) * rate)),
+      .end =
+          first + static_cast<std::ptrdiff_t>((plan.last_position / plan.rate - before) * rate) + 1,
       .guard = static_cast<std::size_t>(
                    std::ceil(pulse.half_duration() / (1.0 - plan.max_doppler) * rate)) +
                lanes,
-      .half_band = half_band / period,
+      .half_band = band.all,
       .centre = pulse.centre_frequency(),
-      .own_half_band = band.one / period,
+      .turn = plan.carrier - pulse.centre_frequency(),
+      .own_half_band = band.one,
       .pulse_duration = plan.pulse_duration};
   const FineSpectrum spectrum(pulse);
   std::vector<Piece> pieces(sea.blocks.size());
@@ -430,13 +435,17 @@ void Synthesizer::add_streams(const ReverberationStreams& sea, std::span<const V
     pieces[b] = piece_of(sea, sea.blocks[b], spectrum, grid, phones, draw);
   });
   const ComplexFft<float> coarse(length), fft(fine);
-  const auto highest = std::min(static_cast<std::size_t>(half_band), (length - 1) / 2);
+  const std::size_t highest =
+      std::min({static_cast<std::size_t>(std::ceil(band.all * period + 1.0)),
+                static_cast<std::size_t>(plan.highest_bin), (std::min(length, fine) - 1) / 2});
+  const std::vector<std::complex<float>> later =
+      delay_of_bins(static_cast<double>(first) / rate - origin, period, highest);
   in_parallel(phones.size(), [&](std::size_t phone) {
     Scratch sum(length), values(fine);
     for (const Piece& piece : pieces) {
       const std::complex<float>* const from = piece.values.data() + phone * piece.samples;
-      auto at = static_cast<std::size_t>((piece.first + 2 * static_cast<std::ptrdiff_t>(length)) %
-                                         static_cast<std::ptrdiff_t>(length));
+      const auto n = static_cast<std::ptrdiff_t>(length);
+      auto at = static_cast<std::size_t>(((piece.first - first) % n + n) % n);
       for (std::size_t i = 0; i < piece.samples; ++i) {
         sum[at] += from[i];
         if (++at == length) at = 0;
@@ -444,8 +453,9 @@ void Synthesizer::add_streams(const ReverberationStreams& sea, std::span<const V
     }
     coarse.forward(sum.data());
     const float scale = 1.0F / static_cast<float>(length);
-    std::copy_n(sum.data(), highest + 1, values.data());
-    std::copy_n(sum.data() + (length - highest), highest, values.data() + (fine - highest));
+    for (std::size_t k = 0; k <= highest; ++k) values[k] = sum[k] * later[k];
+    for (std::size_t k = 1; k <= highest; ++k)
+      values[fine - k] = sum[length - k] * std::conj(later[k]);
     fft.inverse(values.data());
     std::complex<float>* of_phone = baseband.values.data() + phone * fine;
     for (std::size_t i = 0; i < fine; ++i) of_phone[i] += scale * values[i];

@@ -127,13 +127,14 @@ class Synthesizer {
                                     std::vector<std::complex<float>> memory) const;
   [[nodiscard]] Baseband silence_of_band(std::size_t phones, double bins,
                                          std::vector<std::complex<float>> memory) const;
-  /// Half the band of streams [bins of the period]: of any one about the pulse's frequency as it
-  /// receives it, of all about the carrier.
+  /// Half the band of streams [Hz]: of any one about the pulse's frequency as it receives it, of
+  /// all about the pulse's frequency.
   struct StreamBand {
     double one = 0.0, all = 0.0;
   };
   [[nodiscard]] StreamBand band_of(const ReverberationStreams& sea) const;
-  [[nodiscard]] std::shared_ptr<const std::vector<std::complex<float>>> covariance_spectra(
+  struct CovarianceSpectra;
+  [[nodiscard]] std::shared_ptr<const CovarianceSpectra> covariance_spectra(
       const BandNodes& band) const;
 
   friend class BlockSynthesis;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <sstream>
 
@@ -64,6 +65,13 @@ std::uint64_t next_identity() {
   return next++;
 }
 
+/// Samples of a record to half a pulse, or to 64 times what its band resolves if that is less.
+std::size_t unit_of(const Pulse& pulse, const Recording& record) {
+  const double most =
+      record.sample_rate * std::min(0.5 * pulse.duration(), 64.0 / pulse.bandwidth_40db());
+  return std::bit_floor(std::max<std::size_t>(2, static_cast<std::size_t>(most)));
+}
+
 Recording without_epoch(Recording recording) {
   recording.epoch = 0.0;
   return recording;
@@ -100,19 +108,21 @@ std::shared_ptr<const Synthesizer::Plan> Synthesizer::Plan::recalled(const Pulse
 
 Synthesizer::Plan::Plan(const Pulse& sent, const Recording& record, double doppler,
                         const std::vector<std::function<double(double)>>& filters)
-    : Plan(responses(sent, record, doppler, filters), sent.duration(), record, doppler) {}
+    : Plan(responses(sent, record, doppler, filters), sent.duration(), unit_of(sent, record),
+           record, doppler) {}
 
 Synthesizer::Plan::Plan(const BandLimitedPulse& sound, const Recording& record, double doppler)
-    : Plan(std::vector{sound}, 0.0, record, doppler) {}
+    : Plan(std::vector{sound}, 0.0, 2, record, doppler) {}
 
-Synthesizer::Plan::Plan(std::vector<BandLimitedPulse> sounds, double duration,
+Synthesizer::Plan::Plan(std::vector<BandLimitedPulse> sounds, double duration, std::size_t whole,
                         const Recording& record, double doppler)
     : identity(next_identity()),
       recording(without_epoch(record)),
       max_doppler(doppler),
       pulse_duration(duration),
       pulses(std::move(sounds)),
-      expansion(pulses.back()) {
+      expansion(pulses.back()),
+      unit(whole) {
   if (pulses.size() > 1) pulses.pop_back();
   const BandLimitedPulse& pulse = pulses.front();
   const double longest = pulse.half_duration() / (1.0 - max_doppler);
@@ -124,8 +134,8 @@ Synthesizer::Plan::Plan(std::vector<BandLimitedPulse> sounds, double duration,
   constexpr double margin = 4.0 * DelayKernel::taps;  // samples
   const double least_period = record_duration + 2.0 * longest + margin / least_rate;
 
-  const auto least_pairs = std::ceil(0.5 * least_period * recording.sample_rate);
-  passband_length = 2 * fast_fft_length(static_cast<std::size_t>(least_pairs));
+  const double least_units = least_period * recording.sample_rate / static_cast<double>(unit);
+  passband_length = unit * fast_fft_length(static_cast<std::size_t>(std::ceil(least_units)));
   const double period = static_cast<double>(passband_length) / recording.sample_rate;
   carrier_bin = static_cast<std::ptrdiff_t>(std::round(pulse.centre_frequency() * period));
   carrier = static_cast<double>(carrier_bin) / period;
@@ -136,6 +146,13 @@ Synthesizer::Plan::Plan(std::vector<BandLimitedPulse> sounds, double duration,
   lead = static_cast<std::size_t>(std::ceil(longest * rate)) + DelayKernel::taps;
   last_position = static_cast<double>(lead) + (record_duration + longest) * rate + 1.0;
   deconvolution = deconvolution_of(length, highest_bin);
+}
+
+Synthesizer::Plan::Clock Synthesizer::Plan::clock(double least) const {
+  const double units = recording.sample_rate / static_cast<double>(unit);  // a second
+  const std::size_t to_a_unit = fast_fft_length(static_cast<std::size_t>(std::ceil(least / units)));
+  return {.rate = static_cast<double>(to_a_unit) * units,
+          .length = to_a_unit * (passband_length / unit)};
 }
 
 std::vector<float> Synthesizer::Plan::deconvolution_of(std::size_t samples,

@@ -39,6 +39,8 @@ struct Synthesizer::Plan {
   DopplerExpansion expansion;
   const DelayKernel& kernel = DelayKernel::shared();
 
+  /// The period is a whole number of so many samples of the record, a power of two.
+  std::size_t unit = 2;
   std::size_t length = 0;            ///< of the baseband FFT
   std::size_t passband_length = 0;   ///< of the real FFT at the phones' rate
   double rate = 0.0;                 ///< of the baseband [Hz]
@@ -48,6 +50,15 @@ struct Synthesizer::Plan {
   std::size_t lead = 0;              ///< grid samples before the record where impulses may lie
   double last_position = 0.0;        ///< of an impulse in the grid, in samples
   std::vector<float> deconvolution;  ///< [2·highest_bin + 1] 1/(kernel's spectrum · length)
+
+  /// Times at which noise may have its impulses: whole numbers of 1/rate since the ping, the same
+  /// ones in any record of it.
+  struct Clock {
+    double rate = 1.0;       ///< [Hz]
+    std::size_t length = 0;  ///< impulses to a period
+  };
+  /// The slowest clock of at least that rate [Hz].
+  [[nodiscard]] Clock clock(double least) const;
 
   /// A segment of the grid, or all of it, with an FFT of its own.
   struct Period {
@@ -69,8 +80,8 @@ struct Synthesizer::Plan {
 
  private:
   /// \param sounds  [responses], and after several the one that none of them has filtered
-  Plan(std::vector<BandLimitedPulse> sounds, double duration, const Recording& recording,
-       double max_doppler);
+  Plan(std::vector<BandLimitedPulse> sounds, double duration, std::size_t unit,
+       const Recording& recording, double max_doppler);
 };
 
 }  // namespace asdic::detail

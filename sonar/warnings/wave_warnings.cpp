@@ -18,18 +18,18 @@
 namespace asdic::detail {
 namespace {
 
-/// What is told of a leg across the pulse's band.
+/// Properties of a leg across the pulse's band.
 struct AcrossThePulse {
-  double change_db = 0.0;  ///< of waves, from the centre to either edge, the most
-  double change = 0.0;     ///< of all, the same, over the leg's amplitude
-  double error = 0.0;      ///< of what is computed across it, over the greatest
+  double change_db = 0.0;  ///< largest change of waves from the centre to either edge
+  double change = 0.0;     ///< largest change of all paths, over the leg's amplitude
+  double error = 0.0;      ///< error of the interpolation, over the largest value
   double corners = 0.0;    ///< share of the leg's energy, of turned_at_corners()
   double caustics = 0.0;   ///< the same, of unsure_amplitudes()
 };
 
 AcrossThePulse across_the_pulse(const PropagationPaths& paths, const MetLeg& leg,
                                 const Pulse& pulse, BandOfLosses band) {
-  constexpr double matters = 0.01;  // of the leg's energy
+  constexpr double matters = 0.01;  // share of the leg's energy
   AcrossThePulse found;
   if (!changes_with_frequency(paths, leg)) return found;
   const double half = 0.5 * pulse.bandwidth_99();
@@ -136,7 +136,7 @@ double turned_at_corners(const Environment& ocean, const Arrivals& paths, double
   return all > 0.0 ? off / all : 0.0;
 }
 
-/// What reaches a place from a source.
+/// Sound of rays from a source at a place.
 struct Reached {
   bool in_the_water = false;  ///< by a ray without the bottom
   double by_rays = 0.0;       ///< Σ|A|² [1/m² × 1 m²]

@@ -19,6 +19,7 @@
 #include "sonar/noise/noise_spectrum.h"
 #include "sonar/scenario/sampling.h"
 #include "sonar/scenario/scenario.h"
+#include "sonar/signal/pulse_coherence.h"
 #include "study/measures/expected_power.h"
 #include "study/plan/no_value.h"
 
@@ -42,27 +43,38 @@ const EchoPath* strongest(const PingRecord& record, int array, int target, int c
   return best;
 }
 
-/// The cells of an echo: those in which the powers of the target's pairs of paths add up to at
-/// least a hundredth of the loudest cell's. \param cell  length of a cell [s] \return numbers of
-/// cells after the strongest pair, rising; {0} if there is no path
-std::vector<std::ptrdiff_t> cells_of(const PingRecord& record, int array, int target, double cell) {
-  constexpr double faintest = 0.01;
+/// The cells of an echo: those in which the filter answers to all pairs of the target's paths with
+/// at least a tenth of the most power that it answers with in any. \param cell  its length [s]
+/// \return numbers of cells after the strongest pair, rising; {0} if there is no path
+std::vector<std::ptrdiff_t> cells_of(const PingRecord& record, int array, int target,
+                                     const Pulse& pulse, double cell) {
+  constexpr double faintest = 0.1;
+  constexpr double reach = 8.0;  // cells from a pair, beyond which its answer is 4 % at most
   const EchoPath* loudest = strongest(record, array, target, Return::all_channels);
   if (loudest == nullptr) return {0};
-  std::map<std::ptrdiff_t, double> powers;
-  double most = 0.0;
+  const auto coherence = pulse_coherence(pulse);
+  std::map<std::ptrdiff_t, std::complex<double>> answers;
   for (const EchoPath& echo : record.echoes) {
     if (echo.array != array || echo.target != target ||
         echo.received.channel != loudest->received.channel)
       continue;
-    const double later = (echo.received.delay - loudest->received.delay) / cell;
-    double& power = powers[std::lround(later)];
-    power += power_from_db(echo.level_db);
-    most = std::max(most, power);
+    const double later = echo.received.delay - loudest->received.delay;
+    const std::complex<double> amplitude =
+        echo.received.amplitude *
+        std::polar(1.0, -2.0 * pi * std::fmod(pulse.centre_frequency() * later, 1.0));
+    const auto first = static_cast<std::ptrdiff_t>(std::ceil(later / cell - reach)),
+               last = static_cast<std::ptrdiff_t>(std::floor(later / cell + reach));
+    for (std::ptrdiff_t k = first; k <= last; ++k) {
+      const double after = static_cast<double>(k) * cell - later;
+      const std::complex<double> alike = (*coherence)(std::abs(after));
+      answers[k] += amplitude * (after < 0.0 ? std::conj(alike) : alike);
+    }
   }
+  double most = 0.0;
+  for (const auto& [at, answer] : answers) most = std::max(most, std::norm(answer));
   std::vector<std::ptrdiff_t> cells;
-  for (const auto& [at, power] : powers)
-    if (power >= faintest * most) cells.push_back(at);
+  for (const auto& [at, answer] : answers)
+    if (std::norm(answer) >= faintest * most) cells.push_back(at);
   return cells;
 }
 
@@ -277,7 +289,8 @@ class TargetFilter {
                         noise_density(simulator.scenario().noise, pulse_.centre_frequency()))
                   : 0.0),
         cell_(cell_samples(pulse_, whole_.sample_rate)),
-        spread_(cells_of(record, array, target, static_cast<double>(cell_) / whole_.sample_rate)) {}
+        spread_(cells_of(record, array, target, pulse_,
+                         static_cast<double>(cell_) / whole_.sample_rate)) {}
   TargetFilter(const TargetFilter&) = delete;
   TargetFilter& operator=(const TargetFilter&) = delete;
 
@@ -362,7 +375,7 @@ class TargetFilter {
   [[nodiscard]] std::vector<double> answers(const PingRecord& received, const SampleRange& part,
                                             const Window& window) const {
     const std::size_t samples = received.recording.samples;
-    constexpr std::size_t few = 8;  // that are sums in time; more take a transform
+    constexpr std::size_t few = 8;  // sums in time; more cells take a transform
     std::vector<double> powers;
     if (window.size() > few) {
       const std::ptrdiff_t first = window.front().at, last = window.back().at;
@@ -381,7 +394,7 @@ class TargetFilter {
   }
 
  private:
-  /// The echo's cells moved by `moved` samples. \param of  which of them to take
+  /// The echo's cells moved by `moved` samples.   \param of  whether to take a cell
   template <class Of>
   [[nodiscard]] Window window(std::ptrdiff_t moved, Of&& of) const {
     Window found;
@@ -509,8 +522,8 @@ FilterAnswer filter_answer(const PingSimulator& simulator, const PingRecord& rec
     }
     return level.over_others(power, around, times);
   };
-  // Of a window the cell that is the least probable by chance stands for all: as the ratio that is
-  // as rare in one cell, so that (3) is its threshold.
+  // The cell of a window that is least probable by chance represents the window, given as the ratio
+  // that is equally improbable in one cell, so that (3) is its threshold.
   const auto compare = [&](const TargetFilter::Window& window, const std::vector<double>& means,
                            double& statistic, double& threshold) {
     const std::vector<double> powers = one.answers(record, part, window);
@@ -544,8 +557,9 @@ FilterAnswer filter_answer(const PingSimulator& simulator, const PingRecord& rec
 
 int cells_of_echo(const PingSimulator& simulator, const PingRecord& record, int array, int target) {
   const double rate = recording_of(simulator.scenario()).sample_rate;
-  const std::ptrdiff_t cell = cell_samples(simulator.pulse(record.transmitter), rate);
-  return static_cast<int>(cells_of(record, array, target, static_cast<double>(cell) / rate).size());
+  const Pulse& pulse = simulator.pulse(record.transmitter);
+  const double cell = static_cast<double>(cell_samples(pulse, rate)) / rate;
+  return static_cast<int>(cells_of(record, array, target, pulse, cell).size());
 }
 
 std::vector<FreeCell> free_cells(const PingSimulator& simulator, const PingRecord& record,

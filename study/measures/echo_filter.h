@@ -42,13 +42,13 @@ struct FreeCell {
 };
 
 /// y(τ) = ∫ p₊(t) s₊*(η(t − τ)) dt / ∫|s₊|² dt at the Doppler factor η and, of a beam, the slowness
-/// of the target's strongest path, in all cells of 1/B in which its paths bring a hundredth of what
-/// the loudest has; over its background. That is E|y|² = 2N₀/(n∫|s₊|²dt) of n phones' white noise,
-/// the mean of |y|² in the nearest cells that are free of echoes, the same along a trend of their
-/// level, or the mean over draws. A target that no path reaches is listened for when the sound
-/// would come along a straight line. Source: docs/theory/studies.md, eq. (1)–(3), (16) and (27)
-/// \param record  the whole, or the part of it that samples_for_filter() names
-/// \param false_alarm_probability  of all cells of the echo together, for the thresholds
+/// of the target's strongest path, in all cells of 1/B in which it answers to the target's paths
+/// with a tenth of the loudest one's power; over its background. That is E|y|² = 2N₀/(n∫|s₊|²dt) of
+/// n phones' white noise, the mean of |y|² in the nearest cells that are free of echoes, the same
+/// along a trend of their level, or the mean over draws. A target that no path reaches is listened
+/// for when the sound would come along a straight line. Source: docs/theory/studies.md, eq.
+/// (1)–(3), (16) and (27) \param record  the whole, or the part of it that samples_for_filter()
+/// names \param false_alarm_probability  of all cells of the echo together, for the thresholds
 /// \param expected  of this target
 [[nodiscard]] FilterAnswer filter_answer(const PingSimulator& simulator, const PingRecord& record,
                                          const MatchedFilterPlan& plan, int array, int target,

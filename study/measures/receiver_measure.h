@@ -20,7 +20,7 @@ struct ReceiverAnswer {
 struct ReceiverAnswers {
   std::vector<ReceiverAnswer> targets;
   int false_alarms = 0;               ///< detections that are nobody's
-  double of_noise = 0.0;              ///< most false alarms that even noise makes
+  double of_noise = 0.0;              ///< largest number of false alarms by even noise
   std::vector<Detection> detections;  ///< all of them, sorted by time
   TrackedPing places{};               ///< of all of them, and whose they are, for a tracker
 };

@@ -200,7 +200,7 @@ Pilot pilot(const Study& study, const PilotOptions& options) {
   made.processor.interval.low += made.start;
   made.processor.interval.high += made.start;
   made.budget = budget_of(study.scenario, MemoryBudget()).bytes();
-  // A row that asks for more than all may take is refused.
+  // A row that needs more than the whole budget is refused.
   const double most = std::max(made.budget, made.row_memory);
   for (double* bytes :
        {&made.row_most.total, &made.row_most.interval.low, &made.row_most.interval.high})

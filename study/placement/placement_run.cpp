@@ -97,7 +97,8 @@ class Placing {
     std::optional<Sampler> sampler;
     if (!plan_.inputs.variables.empty()) sampler.emplace(plan_.inputs);
     const std::size_t maps = count() * (problem.pairs ? count() : 1);
-    // Maps, and which of their cells a ray comes to; what the search holds of a set.
+    // Maps with a flag for each cell that a ray reaches, and the numbers that the search keeps of a
+    // set.
     const double numbers = double(std::max(plan_.draws, plan_.judging)) * double(size());
     const double sets = problem.pairs ? double(most_workers()) + 1.0 : 1.0;
     budget_.take(

@@ -168,6 +168,33 @@ def alike(a, b, s, share, what, phones=slice(None), part=slice(None)):
                f"of the record), at most {share:.1e}")
 
 
+def alike_in_the_mean(a, b, s, share, what):
+    """The same samples, or the same paths where rough boundaries scatter about them.
+
+    What is scattered is drawn from the waves of the sea at the places of the bounces (docs/theory/surface-scattering.md,
+    Energy): other places have other waves. Mean fields, delays and the energy that is scattered have no such draw.
+    """
+    if not np.any(np.nan_to_num(a.arrivals.get("scattered", np.zeros(1))) > 0.0):
+        alike(a, b, s, share, what)
+        return
+    for name, rows, others in (("arrivals", a.arrivals, b.arrivals), ("echoes", a.echoes, b.echoes)):
+        x, y = (pressures(one, s["_hz"]) for one in (rows, others))
+        expect(x.shape == y.shape, f"{what}: {x.shape} and {y.shape} {name}")
+        off, most = np.abs(x - y).max(initial=0.0), np.abs(x).sum()
+        expect(off <= share * most, f"{what}: one of the {name} differs by {off / max(most, 1e-300):.2e} of all, at most {share:.1e}")
+
+
+def pressures(rows, hz):
+    """Paths at a frequency, and the roots of what is scattered about them; echoes with what is scattered, in the mean."""
+    if not rows or len(rows["delay"]) == 0:
+        return np.zeros(0)
+    turned = np.exp(-2j * np.pi * hz * rows["delay"])
+    if "level_db" in rows:
+        return 10 ** (rows["level_db"] / 20) * turned
+    return np.concatenate([(rows["amplitude_real"] + 1j * rows["amplitude_imag"]) * turned,
+                           np.sqrt(np.nan_to_num(rows["scattered"]))])
+
+
 def field(rows, hz):
     """Sum of a leg's paths at a frequency, and the sum of their amplitudes."""
     a = rows["amplitude_real"] + 1j * rows["amplitude_imag"]

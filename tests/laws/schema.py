@@ -43,7 +43,7 @@ LEFT_OUT = {
     "target.waypoints": "the factor `motion` sets them",
 }
 
-# Keys that the reader takes beside another alone, which a schema cannot say.
+# Keys that the reader takes beside another alone.
 BESIDE = {"correlation_length": "k_shape"}
 # Keys of which the reader takes one alone.
 APART = [{"coherence_time", "frozen"}, {"sea_state", "wind_speed"}]

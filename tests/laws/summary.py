@@ -47,8 +47,10 @@ def strongest_path_is_listed(s, p):
 
 @law
 def echo_is_its_legs(s, p):
-    """A row of /echoes is the product of two rows of /arrivals, what is scattered about them included: level and delay, of an
-    omnidirectional source at rest."""
+    """A row of /echoes is the product of two rows of /arrivals: level and delay, of an omnidirectional source at rest.
+
+    A level is that of the mean intensity, with what rough boundaries scatter about the paths (docs/theory/echoes.md).
+    """
     s = still(one_echo(s))
     record = ping(s)
     out, home = need_leg(record, 0), need_leg(record, 1)

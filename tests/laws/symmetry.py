@@ -3,8 +3,8 @@ import math
 
 import numpy as np
 
-from law import (LAWS, Silent, alike, copied, db, energy, everywhere, expect, field, law, loudness, need_leg, norm, one_place, ping,
-                 plain, still, stratified, warned)
+from law import (LAWS, Silent, alike, alike_in_the_mean, copied, db, energy, everywhere, expect, field, law, loudness,
+                 need_leg, norm, one_place, ping, plain, still, stratified, warned)
 
 
 @law
@@ -73,7 +73,7 @@ def turned_world(s, p):
 
 @law
 def mirrored_world(s, p):
-    """Samples do not know right from left. As `turned_world`."""
+    """Samples do not know right from left, but for waves that are drawn, which are not mirrored. As `turned_world`."""
     s = without_map(plain(s))
     first = ping(s)
     m = copied(s)
@@ -103,18 +103,21 @@ def mirrored_world(s, p):
     if "bearing_deg" in t:
         t["bearing_deg"] = -t["bearing_deg"]
     m["environment"]["transect"] = {"bearing_deg": 0.0}
-    alike(first, ping(m), s, 1e-4, "mirrored")
+    alike_in_the_mean(first, ping(m), s, 1e-4, "mirrored")
 
 
 @law
 def moved_world(s, p):
-    """Samples do not know where the map's [0, 0] is. 1e-9 m of rounding at 1e6 m: 1e-6 of a wavelength of 1 mm."""
+    """Samples do not know where the map's [0, 0] is, but for waves that are drawn, which are those of a place.
+
+    1e-9 m of rounding at 1e6 m: 1e-6 of a wavelength of 1 mm.
+    """
     s = without_map(plain(s))
     first = ping(s)
     dx, dy = p("east", [1000.0, -7.0, 1e5]), p("north", [0.0, 123.0, -2e4])
     m = everywhere(copied(s), lambda v: [v[0] + dx, v[1] + dy, v[2]])
     m["environment"]["transect"] = {"origin": [dx, dy]}
-    alike(first, ping(m), s, 1e-4, f"moved by {dx:g} m east, {dy:g} m north")
+    alike_in_the_mean(first, ping(m), s, 1e-4, f"moved by {dx:g} m east, {dy:g} m north")
 
 
 @law

@@ -43,7 +43,7 @@ inline DepthModes depth_modes(double frequency, double depth, bool rigid, int no
   for (std::size_t i = 0; i < rho.size(); ++i) rho[i] = density(double(i) * h);
   const auto between = [&](std::size_t i) { return 0.5 * (rho[i] + rho[i + 1]); };
   for (std::size_t i = 0; i < n; ++i) {
-    const bool end = rigid && i + 1 == n;  // half a cell
+    const bool end = rigid && i + 1 == n;  // the last cell is half as thick
     const double k = 2.0 * M_PI * frequency / speed(double(i + 1) * h);
     const double stiff = 1.0 / between(i) + (end ? 0.0 : 1.0 / between(i + 1));
     weight[i] = (end ? 2.0 : 1.0) * rho[i + 1];

@@ -19,7 +19,7 @@ struct LossUnit {
 };
 
 constexpr std::string_view quality_factor = "quality_factor";
-constexpr double most_per_wavelength = 50.0;  // a wave that is gone after one [dB]
+constexpr double most_per_wavelength = 50.0;  // [dB]; leaves 10⁻⁵ of the energy
 const std::array<LossUnit, 6> loss_units{{
     {"attenuation_db_per_wavelength", "shear_attenuation_db_per_wavelength", "dB per wavelength",
      0.0, most_per_wavelength, "what the wave loses", [](double a, double, double) { return a; }},

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""What a run leaves that is killed: nothing on a signal that it can hear; after kill -9 a part, which the next run of
-the same output takes away and `asdic recover` lists.
+"""A run that is ended by a signal leaves nothing. After kill -9 it leaves a part, which `asdic recover` lists and the
+next run of the same output removes.
 
     ASDIC=build/ci/bin/asdic killed_runs.py
 """
 import os
 import signal
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
@@ -14,35 +15,11 @@ from pathlib import Path
 
 import h5py
 
-ASDIC = Path(os.environ["ASDIC"]).resolve()
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "support"))
 
-SEA = """[environment.sound_speed]
-kind = "isovelocity"
-speed = 1500.0
-[environment.bottom]
-depth = 200.0
-kind = "rigid"
-[platform]
-position = [0.0, 0.0, 50.0]
-[transmitter]
-source_level_db = 200.0
-taper = "omnidirectional"
-[pulse]
-kind = "cw"
-frequency = 500.0
-duration = 0.05
-[array]
-kind = "vertical"
-phones = 64
-spacing = 1.0
-[noise]
-spectral_level_db = 40.0
-[reverberation]
-enabled = false
-[pings]
-recording_duration = 30.0
-sample_rate = 4000.0
-"""
+from plain_sea import SEA  # noqa: E402
+
+ASDIC = Path(os.environ["ASDIC"]).resolve()
 
 
 class KilledRuns(unittest.TestCase):
@@ -51,7 +28,8 @@ class KilledRuns(unittest.TestCase):
         cls.folder = tempfile.TemporaryDirectory(prefix="asdic_killed_")
         cls.at = Path(cls.folder.name)
         (cls.at / "sea.toml").write_text(SEA)
-        cls.asdic("ping", "sea.toml", "-q", "-o", "big.h5")
+        large = ("array.phones=64", "pings.samples=pressure", "pings.sample_rate=4000.0", "pings.recording_duration=30.0")
+        cls.asdic("ping", "sea.toml", "-q", *(word for key in large for word in ("--set", key)), "-o", "big.h5")
 
     @classmethod
     def tearDownClass(cls):
@@ -85,15 +63,14 @@ class KilledRuns(unittest.TestCase):
             folder = f"next_{kind}"
             words = ("export", "big.h5", f"--{kind}", "-o", folder)
             if not self.killed(signal.SIGKILL, folder, *words):
-                continue  # it was too quick
+                continue  # the command ended before the signal
             self.assertNotEqual(self.litter(folder), [])
             self.assertIn("no whole ping", self.asdic("recover", folder))
             self.asdic(*words)
             self.assertEqual(self.litter(folder), [])
 
     def test_pings_are_kept_and_listed(self):
-        words = ("ping", "sea.toml", "-q", "--set", "pings.count=2000", "--set", "array.phones=1", "--set",
-                 "pings.recording_duration=2.0", "-o", "pings/p.h5")
+        words = ("ping", "sea.toml", "-q", "--set", "pings.count=2000", "-o", "pings/p.h5")
         (self.at / "pings").mkdir()
         process = subprocess.Popen([ASDIC, *words], cwd=self.at)
         pings = 0

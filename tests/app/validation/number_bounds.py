@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Every number of a scenario has physical bounds, and at them asdic refuses or computes: no number that is none, no hang.
+"""Every number of a scenario has physical bounds. At them asdic refuses or computes, without NaN and without hanging.
 
 The bounds are those of `asdic settings --schema`. Each number of the scenarios below is set to its bounds in turn, to
 the least numbers above 0 where 0 is allowed, and to what lies just outside. The truth is that sound pressure is a
@@ -161,7 +161,7 @@ def scenarios():
     yield pulse(kind="pulse_train", start_frequency=900.0, end_frequency=1100.0, pulses=4, pulse_duration=0.01)
     yield pulse(kind="pulse_train", frequency=1000.0, pulses=4, pulse_duration=0.01)
     yield ping(pulse={"kind": "file", "samples": [0.0, 1.0, 0.0, -1.0] * 8, "sample_rate": 4000.0}, **QUIET)
-    # what sends and what receives
+    # transmitters and arrays
     yield ping(platform={"position": None, "velocity": None,
                          "waypoints": [{"time": 0.0, "position": [0.0, 0.0, 30.0]},
                                        {"time": 100.0, "position": [200.0, 0.0, 30.0]}]},
@@ -297,7 +297,7 @@ def numbers_to_try(rules):
 
 
 def run(folder, number, command, tables, value):
-    """What asdic makes of a scenario. -> "" or what is wrong, whether it was refused"""
+    """Runs a scenario. -> "" or what is wrong, whether it was refused"""
     scenario, result = Path(folder, f"{number}.toml"), Path(folder, f"{number}.h5")
     scenario.write_text("\n".join(f"{key} = {toml(one)}" for key, one in tables.items()) + "\n")
     words = [ASDIC, command, scenario, "-o", result, "-q", "--threads", "1"]

@@ -107,6 +107,8 @@ FAULTS = [
     ("start_frequency = 900.0", "frequency = 900.0", "pulse.frequency"),
     ("tukey_fraction = 0.2", "tukey_fraction = 1.2", "pulse.tukey_fraction"),
     ('window = "tukey"', 'window = "hann"', "pulse.tukey_fraction"),
+    ("gamma2 = 3.0", "gamma2 = 3.0\ncorrelation_length = 80.0", "reverberation.surface.correlation_length"),
+    ("spectral_level_db = 50.0", 'kind = "knudsen"\nwind_speed = 5.0\nsea_state = 2.0', "noise.sea_state"),
     ("phones = 4", "", "array"),
     ("phones = 4", "phones = 4.5", "array"),
     ("spacing = 0.5", "spacing = 0.5\nbehind = [3.0]", "array"),

@@ -19,41 +19,16 @@ import h5py
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(ROOT / "tests" / "support"))
+
+from plain_sea import SEA  # noqa: E402
+
 ASDIC = Path(os.environ["ASDIC"]).resolve()
 COMPILER = os.environ.get("CC") or shutil.which("cc")
 if COMPILER is None:
     print("no C compiler here")
     sys.exit(77)
 
-SEA = """[environment.sound_speed]
-kind = "isovelocity"
-speed = 1500.0
-[environment.bottom]
-depth = 200.0
-kind = "rigid"
-[platform]
-position = [0.0, 0.0, 50.0]
-[transmitter]
-source_level_db = 200.0
-taper = "omnidirectional"
-[pulse]
-kind = "cw"
-frequency = 500.0
-duration = 0.05
-[array]
-kind = "horizontal"
-phones = 1
-[[target]]
-position = [500.0, 0.0, 60.0]
-strength_db = 10.0
-[noise]
-spectral_level_db = 40.0
-[reverberation]
-enabled = false
-[pings]
-recording_duration = 1.0
-sample_rate = 4000.0
-"""
 STUDY = """[study]
 scenario = "sea.toml"
 realisations = 4
@@ -79,7 +54,7 @@ class WithoutLocks(unittest.TestCase):
         cls.folder.cleanup()
 
     def asdic(self, *words, refused=0):
-        """Runs a command; \\refused: the error of every lock."""
+        """Runs a command; refused: the error number of every lock, 0: locks work."""
         more = {"LD_PRELOAD": str(self.library), "NO_LOCKS": str(refused)} if refused else {}
         return subprocess.run([ASDIC, *words], cwd=self.folder.name, env={**os.environ, **more}, capture_output=True,
                               text=True)

@@ -22,7 +22,7 @@ TEST(Utf8, AnythingCanBeMadeUtf8) {
   EXPECT_EQ(as_utf8("a\xc3"), "a\uFFFD");        // half of an é
 }
 
-// A name of any length stands whole in a message: nothing has room for some of it only.
+// A message holds a name of any length completely.
 TEST(Formatted, CutsNothing) {
   std::string name = "a";
   for (int i = 0; i < 5000; ++i) name += "é";

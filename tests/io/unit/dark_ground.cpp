@@ -8,9 +8,9 @@
 namespace asdic::detail {
 namespace {
 
-// A duct of 5 m over a thermocline, 150 Hz: near the sonar waves add a little to what rays bring to
-// the ground, farther off they are all there is. The warning names the ground and where that
-// begins, which is not where they first add anything.
+// A duct of 5 m over a thermocline at 150 Hz. Near the sonar waves add a little to the rays that
+// reach the ground; further away there are only waves. The warning names the ground and the range
+// at which that begins, not the range at which waves first add anything.
 TEST(DarkGround, IsNamedWhereWavesBeginToMatter) {
   const support::TemporaryDirectory folder;
   PingSimulator simulator(read_scenario(folder.write("duct.toml", R"(

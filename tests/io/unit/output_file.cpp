@@ -55,8 +55,8 @@ TEST_F(Output, HasItsNameOnlyWhenItIsWhole) {
   EXPECT_TRUE(parts_of(target).empty());
 }
 
-// The parts of runs that were killed go when the result is there: they are of no use, unless the
-// kind of result says so. One that failed leaves them as they were.
+// A complete result removes the parts of runs that were killed, unless its rules call a part worth
+// keeping. A run that fails leaves them.
 TEST_F(Output, TakesPartsAwayThatAreOfNoUse) {
   const auto target = folder / "a.txt";
   static_cast<void>(folder.write("a.txt.0000.part", "a half"));
@@ -74,7 +74,7 @@ TEST_F(Output, TakesPartsAwayThatAreOfNoUse) {
   EXPECT_EQ(content(folder / "a.txt.part"), "somebody's");
 }
 
-// A signal that ends the program takes what is not whole away, but not what is worth keeping.
+// A signal that ends the program removes unfinished files, except those worth keeping.
 TEST_F(Output, LeavesNothingWhenASignalEndsTheProgram) {
   const auto target = folder / "a.txt";
   {
@@ -159,7 +159,8 @@ TEST_F(Output, IsNoInputOfTheRunUnderAnyName) {
   EXPECT_EQ(said(input, {.force = true}), "") << "another run has read nothing yet";
 }
 
-// What a command reads after it has begun its output is an input as well; but what it makes anew.
+// A file that a command reads after it has begun its output is an input as well, unless the command
+// renews it.
 TEST_F(Output, IsNoInputThatIsReadMeanwhile) {
   const auto data = folder.write("cast.csv", "depth,speed\n0,1500\n");
   for (const bool renews : {false, true}) {
@@ -177,7 +178,7 @@ TEST_F(Output, IsNoInputThatIsReadMeanwhile) {
   EXPECT_EQ(content(data), "new");
 }
 
-// A child reads for this process, and what it does is not seen here.
+// A child process reads for this process, which does not see the files that the child opens.
 TEST_F(Output, IsNoInputThatAChildReads) {
   { Hdf5File::create(folder / "a.nc").set_attribute("", "filetype", "asdic ocean"); }
   const FilesRead reading;

@@ -112,7 +112,7 @@ TEST(Places, PingFilesHoldTheTransect) {
 TEST(Pulses, WhoseBandReachesZeroAreNoted) {
   const auto notes_of = [](const std::string& sweep) {
     return small_scenario({"pulse={kind=\"lfm\", duration=0.4, window=\"hann\", " + sweep + "}",
-                           "pings.recording_duration=5"})  // with the echo in it
+                           "pings.recording_duration=5"})  // the echo arrives within the record
         .notes;
   };
   EXPECT_TRUE(notes_of("start_frequency=300, end_frequency=340").empty());

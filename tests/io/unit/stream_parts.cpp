@@ -10,8 +10,9 @@
 namespace asdic::detail {
 namespace {
 
-// Shallow water, three bounces: pieces of ground at the ends of a cell bring no power at all. They
-// have no direction, and what is summed over all parts (a study's background) would be no number.
+// In shallow water with three bounces, pieces of ground at the ends of a cell bring no power at
+// all. They have no direction, so a sum over all parts (a study's background) would not be a
+// number.
 TEST(StreamParts, AreAllNumbers) {
   const support::TemporaryDirectory folder;
   PingSimulator simulator(read_scenario(folder.write("sea.toml", R"(

@@ -287,7 +287,7 @@ def test_loop():
     with tempfile.TemporaryDirectory() as folder, SmallMoosDB(warp=50) as db:
         block = (ROOT / "scenarios/vehicle.moos").read_text().split("{", 1)[1].rsplit("}", 1)[0]
         block = block.replace("deep_ocean.toml", str(ROOT / "scenarios/deep_ocean.toml"))
-        # so fast as no stream of it is made, and no ping is sent before the last one's record ends
+        # faster than a stream; no ping is sent before the record of the last one ends
         with app(db, folder, block + "\nDelivery = pings"):
             db.wait("ACTIVE_SONAR_ERROR", lambda m: "warning" in m["text"])  # the sonar is up
             came = {}
@@ -425,7 +425,7 @@ def test_heard_records():
         if not knows_listen(folder):
             print("this asdic serve does not listen: left out")
             return
-        with app(db, folder, "Scenario = sea.toml\nBlock = 0.25"):  # by default
+        with app(db, folder, "Scenario = sea.toml\nBlock = 0.25"):  # listens by default
             db.post("SIM_TARGET", "name=rock,x=2500,y=0,depth=400,speed=0,heading=0,strength=30")
             begun = db.now()
             move(db, 0.0)

@@ -253,11 +253,11 @@ def test_missions():
 
 def test_set_clock():
     """The machine's clock is set back by 600 s, then ahead by 1200 s, while a result waits for its
-    time: by a clock that nobody sets it comes when it is due. The step is reported once. A message
-    counts by its age on the clock that stamped it.
+    time. It comes when it is due, because the time of results follows a clock that nobody sets. The
+    step is reported once. A message counts by its age on the clock that stamped it.
     """
     for warp in (1.0, 20.0):
-        wall = [0.0]  # by which the clock was set
+        wall = [0.0]  # step of the clock [s]
         clock = Steady(lambda: warp * (time.monotonic() + wall[0]), warp)
         clock.begin()
         came, errors = [], []
@@ -283,7 +283,7 @@ def test_set_clock():
         due.stop()
         letting_go.join()
         check(not errors, f"{errors}")
-    paused = Steady(lambda: 5.0, 1.0, followed=True)  # a simulation's
+    paused = Steady(lambda: 5.0, 1.0, followed=True)  # clock of a simulation
     paused.begin()
     time.sleep(0.01)
     check(paused() == 5.0 and paused.stepped() == 0.0, "it stands")

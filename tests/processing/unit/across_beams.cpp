@@ -93,10 +93,10 @@ TEST(AcrossBeams, EvenNoiseHasTheFalseAlarmsThatAreTold) {
   }
 }
 
-// And of sweeps with and without a window, in banks of 3 to 11 filters that overlap: of many
-// filters a louder peak explains more of the others, the more so the more are over the threshold.
-// Counted are 0.65 to 1.5 times the number that is set. 0.95 to 1.3, whatever the bank, were too
-// many.
+// Sweeps with and without a window, in banks of 3 to 11 filters that overlap. A louder peak
+// explains more of the others in a larger bank, and if more exceed the threshold. Counted are 0.65
+// to 1.5 times the set number. The earlier prediction of 0.95 to 1.3 times for any bank was too
+// high.
 TEST(AcrossBeams, EvenNoiseHasTheFalseAlarmsOfAnySweep) {
   for (const PulseWindow window : {PulseWindow::none, PulseWindow::hann})
     for (const double speed : {3.0, 30.0})

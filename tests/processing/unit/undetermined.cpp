@@ -67,9 +67,9 @@ TEST(UndeterminedDoppler, IsToldAsTheBanksMiddle) {
   EXPECT_EQ(at_most_edge, 0);
 }
 
-// A bank of three filters, as every bank of a span this small, whatever the span is over the
-// pulse's cell: its making takes as long. It was the number of filters in a cell, squared.
-// Processor time.
+// A bank of so small a span has three filters, whatever the ratio of the span to the pulse's cell,
+// so the processor time to make it is the same. It used to grow with the square of the number of
+// filters in a cell.
 TEST(UndeterminedDoppler, NarrowBanksTakeNoLonger) {
   constexpr double rate = 1000.0;
   const Pulse pulse({.waveform = Lfm{.start_frequency = 100.0, .end_frequency = 300.0},

@@ -260,7 +260,7 @@ class Page(unittest.TestCase):
 
 
     def test_into_a_folder(self):
-        """-o NAME.html is the page, any other name a folder for it, which is made; a file there is nobody's page."""
+        """-o NAME.html names the page; any other name is a folder, which is made. A file of that name is left alone."""
         def run(where):
             words = [os.environ["ASDIC"], "plot", "--html", "sea.h5", "-o", where]
             return subprocess.run(words, cwd=self.folder, capture_output=True, text=True)
@@ -276,8 +276,8 @@ class Page(unittest.TestCase):
         self.assertEqual((self.folder / "mine").read_text(), "mine")
 
     def test_settings_of_matplotlib_that_are_none(self):
-        """No window is opened and no backend needed, whatever the shell says; what keeps matplotlib from starting is
-        told in a line.
+        """No window is opened and no backend needed, whatever the shell sets. Whatever keeps matplotlib from starting
+        is reported in one line.
         """
         def run(**environment):
             words = [os.environ["ASDIC"], "plot", "sea.h5", "-o", "drawn", "--only", "levels", "--force"]
@@ -287,7 +287,7 @@ class Page(unittest.TestCase):
             done = run(MPLBACKEND=backend)
             self.assertEqual((done.returncode, done.stderr), (0, ""), backend)
         (self.folder / "file").write_text("")
-        self.assertEqual(run(MPLCONFIGDIR=str(self.folder / "file")).returncode, 0)  # another folder does
+        self.assertEqual(run(MPLCONFIGDIR=str(self.folder / "file")).returncode, 0)  # another folder is used
         (self.folder / "settings").write_bytes(b"axes.grid: \xff\xfe\n")
         done = run(MATPLOTLIBRC=str(self.folder / "settings"))
         self.assertEqual(done.returncode, 1)

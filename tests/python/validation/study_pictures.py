@@ -137,7 +137,7 @@ class Honest(Case):
                 self.assertIn("90 % confidence", words.replace("\n", " "), name)
 
     def test_numbers_are_in_the_unit_that_the_axis_names(self):
-        """Of places 12 and 14 km away the axis reads 12 and 14, where it says km: along an input, over two, as the
+        """For places 12 and 14 km away an axis in km reads 12 and 14: along one input, over two, and while the
         estimate settles.
         """
         write(self.file)

@@ -322,8 +322,8 @@ TEST(AreaSection, WaterIsThatOfTheVolume) {
     }
 }
 
-// Water on a grid of 92 km, whose half a step about two places reaches to 46 km: the floor is that
-// of its own map in every plane, and both maps end where they do.
+// Water on a grid of 92 km, so that half a step about two places is 46 km. In every plane the floor
+// is that of its own map, and each map ends at its own edge.
 TEST(AreaSection, CoarseWaterDoesNotCutTheFloor) {
   const MapOf coarse(-46e3, 46e3, 2, 2,
                      [](double, double, std::size_t k) { return k == 0 ? 1510.0 : 1500.0; });
@@ -341,7 +341,8 @@ TEST(AreaSection, CoarseWaterDoesNotCutTheFloor) {
       ASSERT_EQ(one.bottom.depth_at(r), other.bottom.depth_at(r)) << bearing << ' ' << r;
     EXPECT_LT(other.bottom.depth_at(11e3), 1.0);  // land
   }
-  // Half a step beyond the outer places: 92 km of the water, 120.25 km of the floor.
+  // Edges lie half a step beyond the outer places: at 92 km for the water, at 120.25 km for the
+  // floor.
   EXPECT_NEAR(both.reach_on_map({0.0, 0.0}, 0.5 * pi, 500e3), 92e3, 2e-3);
   EXPECT_NEAR(alone.reach_on_map({0.0, 0.0}, 0.5 * pi, 500e3), 120.25e3, 2e-3);
   EXPECT_EQ(both.reach_on_map({0.0, 0.0}, 0.5 * pi, 50e3), 50e3);

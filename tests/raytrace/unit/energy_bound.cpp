@@ -1,4 +1,4 @@
-// No path is louder than energy allows, and none that is right is refused.
+// Paths louder than energy allows are refused, and correct ones are not.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,8 +23,8 @@ Environment shelf() {
   return ocean;
 }
 
-// A deliberate fault: one path 100 dB over spherical spreading, or what is scattered about it, or
-// no number at all. The message has the numbers.
+// Deliberate faults: a path, or the sound scattered about it, 100 dB over spherical spreading, and
+// an amplitude that is not a number. The message has the numbers.
 TEST(EnergyBound, RefusesWhatIsLouder) {
   const Arrival right{.amplitude = 1.0 / 13000.0, .scattered = 1.0 / (13000.0 * 13000.0)};
   EXPECT_NO_THROW(ensure_bounded({right, right}, shelf(), ends));
@@ -43,7 +43,7 @@ TEST(EnergyBound, RefusesWhatIsLouder) {
   }
 }
 
-// Finite and of some tens of decibels over spherical spreading.
+// The bound is finite, and some tens of decibels over spherical spreading.
 TEST(EnergyBound, IsFinite) {
   const double d2 = ends.range * ends.range;
   EXPECT_NEAR(db_from_power(most_intensity(shelf(), ends) * d2), 50.0, 10.0);
@@ -52,8 +52,9 @@ TEST(EnergyBound, IsFinite) {
   EXPECT_LT(db_from_power(most_intensity(shelf(), slopes) * d2), 80.0);
 }
 
-// In c = c₀·cosh(az) all rays from the axis meet again after each π/a: the greatest focus there is.
-// Its modes, by finite differences and in phase, stay below the bound and come within 27 dB of it.
+// With c = c₀·cosh(az) all rays from the axis meet again after every π/a, the strongest possible
+// focus. Its modes, by finite differences and in phase, stay below the bound and come within 27 dB
+// of it.
 TEST(EnergyBound, LetsAPerfectFocusPass) {
   const double a = 2e-4, axis = 1500.0, f = 100.0, omega = 2.0 * pi * f;
   const auto speed = [&](double z) { return 1500.0 * std::cosh(a * (z - axis)); };

@@ -122,7 +122,8 @@ Off off(const Water& water, const Places& at) {
   return {std::sqrt(sum.waves / all), std::sqrt(sum.rays / all)};
 }
 
-// The terms and the flat waves are the whole: both ends on one side of the axis, and on either.
+// The terms and the flat waves add up to the whole field, with both ends on one side of the axis or
+// on opposite sides.
 TEST(Cycles, TermsAreTheWholeField) {
   for (const Places& at : {Places{100.0, 1000.0, 1000.0, 48000.0, 48000.0, 1},
                            {100.0, 1500.0, 1600.0, 90000.0, 90000.0, 1},
@@ -185,8 +186,8 @@ TEST(Cycles, ADuctAboveTheAxisIsReceivedBelowIt) {
     }
 }
 
-// Both ends where the speed is greatest, a node of the profile, or a millimetre beside it: the
-// slope is nothing there, and waves that turned on the wrong side were e¹²⁰ times too great.
+// Both ends lie where the speed is greatest, at a node of the profile or a millimetre from it. The
+// slope is 0 there, and waves that turned on the wrong side were e¹²⁰ times too large.
 TEST(Cycles, EndsAtTheGreatestSpeed) {
   const std::vector<double> depth = {0.0, 20.0, 46.712, 80.0, 110.0},
                             speed = {1485.0, 1488.0, 1495.0, 1492.0, 1487.0};

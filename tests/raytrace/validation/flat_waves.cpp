@@ -10,7 +10,7 @@
 namespace asdic::detail {
 namespace {
 
-/// Σ|A|² of a leg, its loudest path, and all of them in phase.
+/// Energy Σ|A|² of a leg's paths, of its loudest path, and of all paths added in phase.
 struct Energy {
   double all = 0.0, loudest = 0.0;
   std::complex<double> sum = 0.0;
@@ -34,9 +34,9 @@ Energy energy_of(const Environment& ocean, double frequency, double source, doub
 
 double db(double power) { return 10.0 * std::log10(power); }
 
-// The Mediterranean in summer, 40 km: a receiver about the minimum of the speed, a node of the
-// profile. Paths' energy is the modes' within 3 dB, of what interferes within a cycle; it was 19 to
-// 35 dB more.
+// The Mediterranean in summer, at 40 km, with a receiver near the minimum of the speed, a node of
+// the profile. The paths' energy is that of the modes within 3 dB, which allows for interference
+// within a cycle. It was 19 to 35 dB higher.
 TEST(FlatWaves, AboutTheAxisOfAProfile) {
   const std::vector<double> depth = {0, 15, 30, 50, 80, 120, 200, 400, 800, 1500, 2600},
                             speed = {1536, 1535, 1525,   1515,   1510.5, 1509,
@@ -58,8 +58,8 @@ TEST(FlatWaves, AboutTheAxisOfAProfile) {
     }
 }
 
-// A smooth channel over a rigid floor: with few bounces no more than the modes that stay in the
-// water, with many those of all. It was 64 and 157 dB more.
+// A smooth channel over a rigid floor. With few bounces the energy is at most that of the modes
+// that stay in the water, with many bounces that of all modes. It was 64 and 157 dB higher.
 TEST(FlatWaves, AboutTheAxisOfASpline) {
   const std::vector<double> depth = {0.0, 148.116, 296.233, 402.226, 508.22},
                             speed = {1497.2208, 1492.8883, 1490.0, 1492.1663, 1495.7767};
@@ -73,7 +73,8 @@ TEST(FlatWaves, AboutTheAxisOfASpline) {
   };
   const auto trapped = modes_from(omega / 1495.7767), all = modes_from(0.1 * omega / 1500.0);
   for (const double receiver : {150.0, 200.0, 216.594, 218.0, 250.0, 296.233}) {
-    // The way back has other rays beside a caustic, and the same waves: each ray may lack 0.1 %.
+    // The reverse direction has other rays near a caustic but the same waves; each ray may be 0.1 %
+    // off.
     const auto there = energy_of(ocean, f, source, receiver, range, 2),
                home = energy_of(ocean, f, receiver, source, range, 2);
     EXPECT_LT(std::abs(there.sum - home.sum), 0.01 * std::sqrt(there.all)) << receiver;

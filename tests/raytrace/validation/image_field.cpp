@@ -194,8 +194,9 @@ TEST(ImageField, IsChosenOnlyWhereItIsTheBeamsLimit) {
   EXPECT_NE(result.notes[0].find("stratified water"), std::string::npos) << result.notes[0];
 }
 
-// Images know no head wave, nor how a beam is displaced: where waves are let they come first,
-// unless walls reflect all angles alike. Where images stand for them the note says what it bounds.
+// Images have no head wave and no displacement of a beam, so waves are preferred where they are
+// allowed, unless the walls reflect all angles alike. If images replace waves, the note says what
+// it bounds.
 TEST(ImageField, GivesWayToWavesWhereAFloorDoesNotMirror) {
   PropagationCase c = ideal_guide();
   c.solver = FieldSolver::automatic;
@@ -210,7 +211,7 @@ TEST(ImageField, GivesWayToWavesWhereAFloorDoesNotMirror) {
   EXPECT_NE(images.notes[0].find("as plane waves are"), std::string::npos);
   c.solver = FieldSolver::automatic;
   c.frequency = 2e4;
-  c.receivers.ranges = {3e5};  // 6e6 wavenumbers of at least four layers
+  c.receivers.ranges = {3e5};  // 6e6 wavenumbers and at least four layers
   const PropagationResult dear = run(c);
   EXPECT_FALSE(dear.waves);
   ASSERT_EQ(dear.notes.size(), 2U);

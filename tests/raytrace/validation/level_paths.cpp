@@ -1,5 +1,4 @@
-// Rays that hardly leave the level, between depths that are equal, almost equal and a few metres
-// apart.
+// Nearly level rays between depths that are equal, almost equal, and a few metres apart.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +13,7 @@ namespace {
 constexpr PathLimits one_bounce{.max_surface_bounces = 1, .max_bottom_bounces = 1};
 constexpr PathLimits in_water{.max_surface_bounces = 0, .max_bottom_bounces = 0};
 
-/// Differences of two depths, from one bit of 50 m to metres.
+/// Differences of two depths, from the last bit of 50 m to metres.
 std::vector<double> differences() {
   std::vector<double> all = {0.0};
   for (const double d : {7.2e-15, 1e-12, 1e-9, 5e-8, 1.01e-7, 3e-7, 9.9e-7, 1.01e-6, 1e-5, 1e-4,
@@ -23,7 +22,8 @@ std::vector<double> differences() {
   return all;
 }
 
-// Truth: images. The direct way is √(r² + d²) long; four more go by one bounce off either boundary.
+// The truth is a sum of images. The direct path is √(r² + d²) long, and four more paths have at
+// most one bounce off either boundary.
 TEST(LevelPaths, InIsovelocityWaterTheDirectRayIsThereWhateverTheDifference) {
   Environment ocean;
   ocean.water = SoundSpeedProfile::isovelocity(1500.0);
@@ -42,7 +42,8 @@ TEST(LevelPaths, InIsovelocityWaterTheDirectRayIsThereWhateverTheDifference) {
         const auto& found = *std::find_if(paths.begin(), paths.end(),
                                           [](const Arrival& a) { return a.bounces.empty(); });
         EXPECT_NEAR(found.delay, length / 1500.0, 1e-9) << depth << ' ' << range << ' ' << apart;
-        // A miss of 0.01 mm of 3 m, and rays of 1e-9 rad, whose q is known to 1e-6 of itself.
+        // The search may miss by 0.01 mm in 3 m, and q of rays at 1e-9 rad is known to 1e-6 of
+        // itself.
         EXPECT_NEAR(found.spreading * length, 1.0, 1e-5) << depth << ' ' << range << ' ' << apart;
         EXPECT_NEAR(found.launch_elevation, -std::atan2(apart, range),
                     1e-5 * std::abs(apart) / range + 1e-15);
@@ -133,9 +134,9 @@ void expect_flat_rays(const SoundSpeedProfile& water, double bottom, double sour
   }
 }
 
-// Where sin²θ is the difference of two speeds that are one but for rounding. A flat ray is the
-// parabola's but for the next order in its way a from the axis, a·c‴/c″ (1.5 m of 650 m), of which
-// three terms add up; from there on it is the search's, which knows sin² to 1e-8.
+// On the axis sin²θ is the difference of two speeds that are equal up to rounding. A flat ray is
+// that of a parabola up to the next order in its distance a from the axis, a·c‴/c″ (1.5 m in 650
+// m), of which three terms add up. Steeper rays are found by the search, which knows sin² to 1e-8.
 TEST(LevelPaths, OnMunksAxisTheNearlyLevelRayIsThereWhateverTheDifference) {
   const SoundSpeedProfile munk = SoundSpeedProfile::munk();
   for (const double range : {1200.0, 20e3, 33e3, 60e3})
@@ -144,8 +145,8 @@ TEST(LevelPaths, OnMunksAxisTheNearlyLevelRayIsThereWhateverTheDifference) {
         expect_flat_rays(munk, 5000.0, source, 1300.0 + apart, range, 200.0, 1e-2);
 }
 
-// An axis whose two sides bend differently, so that no parabola holds. Knots leave RK4 of the third
-// order: steps of 5 m change slopes by 1e-5 of themselves.
+// The two sides of this axis bend differently, so it is not a parabola. At knots RK4 is of third
+// order, so steps of 5 m change slopes by 1e-5 of themselves.
 TEST(LevelPaths, SoIsItOnTheAxisOfAPchipProfile) {
   const SoundSpeedProfile water = SoundSpeedProfile::table(
       std::vector{0.0, 50.0, 100.0, 150.0, 200.0},
@@ -156,11 +157,11 @@ TEST(LevelPaths, SoIsItOnTheAxisOfAPchipProfile) {
         expect_flat_rays(water, 200.0, source, 100.0 + apart, range, 5.0, 1e-2);
 }
 
-// Along a kink of least speed the level ray is straight, q = r, from a source on it and from one
-// that differs from it by less than λ/1000 (7.5 mm): the marched ray from there would wind about
-// the kink, with a q of centimetres and less. Truth: the layered solver's paths where all profiles
-// are one, and in any section those from the kink itself. Half a millimetre of depth changes speeds
-// by 0.5 mm · 0.05 1/s, so delays by 7 ns; and both ends of a path at 10° by sin 10°/c each.
+// Along a kink of least speed the level ray is straight, q = r, from a source on the kink and from
+// one closer to it than λ/1000 (7.5 mm). A ray marched from there would wind about the kink, with a
+// q of at most centimetres. The truth is the layered solver if all profiles are equal, and in any
+// section the paths from the kink itself. Half a millimetre of depth changes speeds by 0.5 mm ·
+// 0.05 1/s, so delays by 7 ns, and at both ends of a path at 10° by sin 10°/c each.
 TEST(LevelPaths, OnAKinkOfASectionTheLevelRayIsOneFromBesideItAsWell) {
   const std::vector<double> range = {0.0, 1200.0}, depth = {0.0, 25.0, 50.0};
   const std::vector<double> profile = {1496.75, 1495.5, 1495.75};

@@ -1,4 +1,4 @@
-// Waves under a rough surface: roughness takes from each path what it takes from a ray, once.
+// Waves under a rough surface: each path loses once what a ray loses by roughness.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -36,8 +36,9 @@ double intensity(const Arrivals& paths) {
   return sum;
 }
 
-// Path for path the smooth sea's, less what its own bounces lose: the mean field e^{−p/2} and the
-// energy that bubbles leave, by the formulae of one bounce. It was up to 153 dB more.
+// Each path is that of the smooth sea less the losses of its own bounces, by the formulae of one
+// bounce: e^{−p/2} for the mean field, and the energy that bubbles leave. It was up to 153 dB
+// louder.
 TEST(RoughWaves, LoseWhatRaysLose) {
   int waves = 0;
   for (const double range : {3000.0, 6000.0, 12945.7})
@@ -66,8 +67,8 @@ TEST(RoughWaves, LoseWhatRaysLose) {
   EXPECT_GT(waves, 100);
 }
 
-// The more wind the less sound, and with no wind the smooth sea's. (The law of bubbles has no
-// limit: a calm sea has none.)
+// Sound decreases with the wind, and without wind it is that of the smooth sea. (The law of bubbles
+// has no such limit; a calm sea has no bubbles.)
 TEST(RoughWaves, FallWithTheWind) {
   for (const double range : {3000.0, 12945.7}) {
     double before = intensity(paths_at(0.0, range, 54.25));

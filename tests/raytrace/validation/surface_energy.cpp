@@ -58,8 +58,9 @@ TEST(SurfaceEnergy, CoherentLossOfAnIsotropicSea) {
   EXPECT_GE(high, 20);
 }
 
-// A vertical wavenumber is k at most, and waves longer than 2k scatter nothing into the water, so
-// that p₁ ≤ sin θ·(ακ²/β)·e^{−β/4κ²}, κ = kU²/g: nothing is left of calm seas and low frequencies.
+// A vertical wavenumber is at most k, and waves of the sea with wavenumbers above 2k scatter
+// nothing into the water, so p₁ ≤ sin θ·(ακ²/β)·e^{−β/4κ²} with κ = kU²/g. At low wind speeds and
+// frequencies this is negligible.
 TEST(SurfaceEnergy, CalmSeasScatterNothing) {
   constexpr double alpha = 8.1e-3, beta = 0.74, k = 0.3;
   for (double kappa = 0.01; kappa < 0.5; kappa *= 1.005)

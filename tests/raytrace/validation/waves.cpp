@@ -159,9 +159,9 @@ TEST(Waves, IdealGuideIsTheSumOfModes) {
   }
 }
 
-// Jensen's guide, by an independent wavenumber integral: head waves and the continuum included,
-// which images by plane-wave coefficients are 0.02 to 0.3 dB off: so waves are what a field is made
-// of where nothing is asked for, too.
+// Jensen's guide, by an independent wavenumber integral that includes head waves and the continuum.
+// Images with plane-wave coefficients are 0.02 to 0.3 dB off, so waves are the default for such a
+// field, too.
 TEST(Waves, PekerisGuide) {
   const support::Csv csv("physics-reference/field_pekeris_250Hz.csv");
   Environment ocean{.water = SoundSpeedProfile::isovelocity(1500.0),

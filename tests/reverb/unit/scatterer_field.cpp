@@ -59,8 +59,8 @@ TEST(ScattererTexture, PowerIsGammaDistributed) {
     const double mean = sum / n, variance = squares / n - mean * mean;
     EXPECT_NEAR(mean, 1.0, 4.9 * std::sqrt(1.0 / shape / n)) << shape;
     EXPECT_NEAR(variance * shape, 1.0, 0.15) << shape;
-    // One square, one texture: of places a metre apart 1 in 100 pairs have a side between them (of
-    // 200, no more than 9 but once in 10⁶), of places 100 m apart all.
+    // Each square has one texture. Of pairs of places a metre apart 1 in 100 has a side between
+    // them (of 200 pairs at most 9, except once in 10⁶); of pairs 100 m apart all have.
     int apart = 0;
     for (int i = 0; i < 200; ++i) {
       const double x = 37.0 * i, here = texture_amplitude(statistics, Vec2(x, 20.0), 1, 9);
@@ -68,8 +68,8 @@ TEST(ScattererTexture, PowerIsGammaDistributed) {
       EXPECT_NE(texture_amplitude(statistics, Vec2(x + 100.0, 20.0), 1, 9), here);
     }
     EXPECT_LE(apart, 9);
-    // Nor is the map's [0, 0] a corner: with other seeds it lies anywhere in its square, so that 1
-    // in 50 has one of two sides within a metre (of 300, no more than 20 but once in 10⁶).
+    // The map's [0, 0] is not a corner. Its place in its square depends on the seed, so that 1 seed
+    // in 50 has one of two sides within a metre (of 300 at most 20, except once in 10⁶).
     int corners = 0;
     for (std::uint64_t seed = 1; seed <= 300; ++seed)
       if (texture_amplitude(statistics, Vec2(-0.5, -0.5), 1, seed) !=

@@ -46,9 +46,10 @@ TEST(ScatteringParts, AreNoneWhereNothingScatters) {
   EXPECT_TRUE(scattering_parts(settings, 10.0, 1500.0).empty());
 }
 
-// Near source and receiver sheets are thinner. Where one is received by itself, at the layer's
-// edge, its power goes as the fourth power of the distance; of a narrow beam, whose area grows, as
-// the second. Half a sheet off, that is half a decibel at most. Far away they are 50 m as ever.
+// Sheets are thinner near source and receiver. The power of a sheet received alone, at the layer's
+// edge, goes as the inverse fourth power of the distance; in a narrow beam, whose area grows, as
+// the inverse square. Over half a sheet this changes by at most half a decibel. Far away sheets are
+// 50 m thick.
 TEST(ScatteringParts, AreThinWhereSpreadingChanges) {
   for (const double end : {5.0, 250.0}) {
     const VolumeLayer layer{.top = 100.0, .bottom = 200.0};

@@ -224,10 +224,10 @@ TEST(ForwardScatter, ScintillatesAsRiceDoes) {
   }
 }
 
-// A kink joins the path's ends by straight ways over a place of the boundary: as far apart and as
-// deep as the mirrored path's, longer than it by `excess`, and of one wave of the sea K is
-// k(cos θ₂ − cos θ₁). Those are two triangles, solved here by their angles. Rounding alone, which
-// tangents of angles of 10⁻³ make 10⁶ times as much.
+// A kink joins the path's ends by straight lines over a place of the boundary. The ends are as far
+// apart and as deep as those of the mirrored path, the lines are longer than it by `excess`, and
+// for one wave of the sea K is k(cos θ₂ − cos θ₁). The two triangles are solved here by their
+// angles. The tolerance is rounding, which tangents of angles of 10⁻³ amplify by 10⁶.
 TEST(ForwardScatter, KinksJoinTheEnds) {
   for (const auto& [wind, frequency] : {std::pair(4.0, 500.0), {15.0, 3500.0}}) {
     const Environment ocean = under(wind);
@@ -254,7 +254,7 @@ TEST(ForwardScatter, KinksJoinTheEnds) {
       if (std::abs(kink.along_way - k * (std::cos(out) - std::cos(in))) < 1e-9 * k) ++one_by_one;
     }
     EXPECT_GT(turned, 250);
-    if (wind < 5.0)  // G² = 0.01: of 500 kinks fewer than 20 are of two waves
+    if (wind < 5.0)  // G² = 0.01: fewer than 20 of 500 kinks have two waves
       EXPECT_GT(one_by_one, 480);
     else  // G² = 13
       EXPECT_LT(one_by_one, 5);

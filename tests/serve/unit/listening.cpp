@@ -138,11 +138,12 @@ std::string with(std::vector<std::pair<std::string, std::string>> others) {
   return text;
 }
 
-// Two pings that overlap are heard as the sum of their records, each simulated by itself: rough
-// surfaces, wide bands, phones far apart or each for itself, several arrays, ways of drawing the
-// sea, at rest and under way, in products. All noise is 140 dB below a sound of 1 µPa/√Hz; what
-// remains is the rounding of sums of three numbers of float32, 3·2⁻²⁴ of the loudest. Streams are
-// left out: what is heard on may turn, so it has cells and draws of its own.
+// Two overlapping pings are received as the sum of their records, each simulated alone.
+// Combinations of rough surfaces, wide bands, phones far apart or each with its own paths, several
+// arrays, and ways of drawing the sea are tried at rest and under way. The noise is 140 dB below 1
+// µPa/√Hz; the tolerance is the rounding of sums of three float32 numbers, 3·2⁻²⁴ of the loudest.
+// Streams are left out, because an array in a continuous record may turn, so that they have other
+// cells and draws.
 TEST(Listening, OverlappingPingsAreTheSumOfTheirRecords) {
   const std::string rough =
                         "kind = \"rigid\"\n[environment.surface]\nkind = \"vacuum\"\n"
@@ -247,8 +248,9 @@ TEST(Listening, AChangeActsWhereAndWhenItHappens) {
   EXPECT_GE(changed_at(R"("sound_speed": {"kind": "isovelocity", "speed": 1490})", rounding), 6.5);
 }
 
-// An update that says what already is changes no bit of what is heard (a sound that is made again
-// has other rounding), makes no other scenario, and is no change that later ones must follow.
+// An update to the present values changes no bit of the samples (sound computed again would be
+// rounded differently), makes no new scenario, and does not count as a change that later ones must
+// follow.
 TEST(Listening, AnUpdateThatChangesNothingCostsNothing) {
   std::string text = support::served_scenario;
   const std::string place = "position = [0.0, 0.0, 200.0]\n";
@@ -376,7 +378,7 @@ TEST(Listening, TellsThatTheSeaIsDrawnAnew) {
   EXPECT_FALSE(heard(turn).contains("sea_drawn_anew"));
   heard(R"({"command": "ping"})");
   heard.listen(0.5);
-  EXPECT_FALSE(heard(turn).contains("sea_drawn_anew"));  // it goes like that already
+  EXPECT_FALSE(heard(turn).contains("sea_drawn_anew"));  // it moves like that already
   EXPECT_EQ(
       heard(R"({"command": "update", "platform": {"velocity": [0, 3, 0]}})")["sea_drawn_anew"],
       true);

@@ -231,10 +231,10 @@ TEST(Stream, StandsHostilePackets) {
   for (const auto& block : received.blocks) EXPECT_EQ(block.content, message(block.block, bytes));
 }
 
-// A stream is its sender's and has its number. A stranger who guesses all else, who sends from
-// another place or without the number, changes nothing: neither a block nor a count of the
-// stream's. Numbers that its descriptor does not allow are none of its packets. After a gap too
-// long to count it goes on at a descriptor; another sender is joined when this one has been silent.
+// A stream belongs to its sender and has a number. Packets from another address, or without the
+// number, change neither a block nor a count of the stream, even if all else in them is right.
+// Packets with numbers that the descriptor does not allow are ignored. After a gap too long to
+// count the receiver continues at a descriptor, and it joins another sender after a silence.
 TEST(Stream, IsBoundToItsSender) {
   const serve::Descriptor about{.stream = 7,
                                 .channels = 1,
@@ -279,7 +279,7 @@ TEST(Stream, IsBoundToItsSender) {
   }
   EXPECT_EQ(counts.lost + counts.lost_blocks + counts.reordered, 0U);
   EXPECT_EQ(counts.others, 3U * 64U * 40U);
-  // Sixty blocks more were not sent in two packets; a block has 4000 bytes, and whole samples.
+  // Two packets cannot hold sixty more blocks; a block has 4000 bytes, and whole samples.
   for (const auto& [block, content] : {std::pair(100, quiet), std::pair(41, std::string(4004, 'x')),
                                        std::pair(41, std::string(7, 'x'))}) {
     const std::uint64_t before = counts.foreign;
@@ -289,7 +289,7 @@ TEST(Stream, IsBoundToItsSender) {
   EXPECT_EQ(blocks.size(), 40U);
   serve::Packets later(200'000);
   send(later, "A", PacketKind::block, 7, 1000, quiet);
-  EXPECT_EQ(blocks.size(), 40U);  // it is not known where it goes on
+  EXPECT_EQ(blocks.size(), 40U);  // the next block is not known yet
   describe(later, "A", 7, 1001);
   send(later, "A", PacketKind::block, 7, 1001, quiet);
   ASSERT_EQ(blocks.size(), 41U);

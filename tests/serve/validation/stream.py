@@ -395,8 +395,8 @@ def packet(kind, sequence, block, content, stream=7, fragment=0, fragments=1):
 
 
 def is_bound_to_its_sender():
-    """A stranger's packets, whatever numbers they guess, neither give a block nor stop one; who comes
-    back after a long gap goes on at a descriptor; another sender is taken when this one is silent.
+    """Packets of a stranger, whatever numbers they guess, neither give nor stop a block. After a long gap
+    the reader continues at a descriptor; it takes another sender when this one is silent.
     """
     loud, quiet = np.full(250, 1e6, "<f4").tobytes(), bytes(1000)
     reader = Assembler()
@@ -405,20 +405,20 @@ def is_bound_to_its_sender():
     for n in range(40):  # three packets a block
         for i in range(3):
             got += reader.take(packet(1, 1 + 3 * n + i, n, bytes(1408 if i < 2 else 1184), 7, i, 3), "A", 0.1 * n)
-        for sequence in range(0, 2**32, 2**26):  # blindly; from its own place, too, without its number
+        for sequence in range(0, 2**32, 2**26):  # blind, also from its own address without its number
             for sender, stream in (("B", 7), ("B", 8), ("A", 8)):
                 got += reader.take(packet(1, sequence + 4, n + 1, loud, stream), sender, 0.1 * n)
             got += reader.take(packet(0, sequence, n, described(9, n), 9), "B", 0.1 * n)
     check([b.number for b in got] == list(range(40)) and not any(b.samples.any() for b in got), "its blocks alone")
     check(reader.lost == reader.lost_blocks == reader.reordered == 0 and reader.others > 5000, "and the rest counted")
-    # Numbers that its descriptor does not allow: a block further on than so few packets can bring,
-    # more bytes than a block has, less than whole samples.
+    # Numbers that the descriptor does not allow: a block too far ahead for so few packets, more bytes than a block has,
+    # a part of a sample.
     for sequence, block, content, fragments in ((200, 70, quiet, 1), (201, 41, bytes(1408), 4),
                                                 (202, 41, bytes(1001), 1)):
         before = reader.foreign
         check(not reader.take(packet(1, sequence, block, content, 7, 0, fragments), "A", 4.0), "no block")
         check(reader.foreign == before + 1, (block, len(content), fragments))
-    # 200 000 packets later: what was lost is told, and it goes on.
+    # After 200 000 packets the receiver reports the loss and continues.
     check(not reader.take(packet(1, 200_001, 1000, quiet), "A", 9.0), "not before it is known where")
     reader.take(packet(0, 200_002, 1001, described(7, 1001)), "A", 9.0)
     (block,) = reader.take(packet(1, 200_003, 1001, quiet), "A", 9.0)
@@ -427,7 +427,7 @@ def is_bound_to_its_sender():
     check(reader.sender == "A", "it is kept")
     reader.take(packet(0, 5, 0, described(8), 8), "B", 14.1)
     check(reader.sender == "B" and len(reader.take(packet(1, 6, 0, quiet, 8), "B", 14.1)) == 1, "now it is")
-    # An end is told three times, and ends one stream; the next may be anyone's.
+    # An end is sent three times and ends one stream; the next one may have any sender.
     for i in range(3):
         reader.take(packet(0, 7 + i, 1, described(8, 1, ended=True), 8), "B", 15.0)
         check(reader.ended == (i == 0), "once")

@@ -85,7 +85,7 @@ TEST_P(SharedPropagationLaws, NothingIsTracedTwiceAndNoBitChanges) {
     const PingRecord record = PingSimulator(s, shared).simulate(1);
     EXPECT_TRUE(record.reuse.ocean);
     EXPECT_TRUE(record.reuse.reverberation);
-    // Over slopes paths are looked for at the outermost phones, too, which have turned.
+    // Over slopes paths are also searched to the outermost phones, which have turned.
     const bool over_slopes = s.environment.bottom.shape.has_value();
     if (!over_slopes || change.name != "heading of the array") {
       EXPECT_EQ(record.reuse.legs_searched, 0);

@@ -1,5 +1,5 @@
-// What the summary and the levels of a ping say, against the samples of its record, over products:
-// pulse × band × paths × motion × phones.
+// The summary and the levels of a ping against the samples of its record, over products of pulse,
+// band, paths, motion and phones.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,10 +28,10 @@ Scenario guide(double depth, const PulseSettings& pulse) {
   s.reverberation.enabled = false;
   s.pings.recording_duration = 0.4 + pulse.duration;
   s.pings.samples = Samples::baseband;
-  // So dense that little of a peak is lost between two samples. A Hann window of a tone has 17 of
-  // them, the peak is half of one off at most: sin²(π(½ + 1/34)), 0.08 dB. Edges without a window
-  // overshoot for about as long as two. Doppler shifts take 6 kHz. Of a sweep, two paths that beat
-  // at its whole width would be cos(π/12), 0.3 dB.
+  // Rate at which little of a peak is lost between two samples. The Hann window of a tone has 17
+  // samples, and the peak is at most half a sample away: sin²(π(½ + 1/34)), 0.08 dB. Edges without
+  // a window overshoot for about two samples. Doppler shifts need 6 kHz. Two paths of a sweep that
+  // beat at its whole width lose cos(π/12), 0.3 dB.
   const double bandwidth = Pulse(pulse).bandwidth_40db();
   s.pings.baseband_rate = (bandwidth * pulse.duration > 100.0 ? 6.0 : 3.0) * bandwidth + 6000.0;
   return s;
@@ -60,11 +60,10 @@ const NamedPulse pulses[] = {
     {"50 ms sweep",
      {.waveform = Lfm{.start_frequency = 98e3, .end_frequency = 102e3}, .duration = 0.05}}};
 
-// The peak is that of the middle phone's samples. The two share the paths and the pulse's spectrum,
-// but the samples are synthesised by FFT and the peak is a sum of pulses path by path. 0.3 dB is
-// what samples may miss, as said above; 0.1 dB is left for the synthesis (−80 dB) and the search
-// (0.02 dB).
-// Of a sum over 4000 times of the whole echo, as it was, it is 2 to 170 dB below.
+// The peak is that of the middle phone's samples. Both use the same paths and the pulse's spectrum,
+// but the samples are synthesised by FFT, and the peak is a sum of pulses path by path. Samples may
+// miss 0.3 dB of the peak, as derived above; 0.1 dB is left for the synthesis (−80 dB) and the
+// search (0.02 dB). The earlier search at 4000 times of the whole echo was 2 to 170 dB too low.
 TEST(SummaryAndSamples, EchoPeakIsThatOfTheSamples) {
   for (const NamedPulse& pulse : pulses)
     for (const double depth : {30.0, 200.0})
@@ -86,9 +85,10 @@ TEST(SummaryAndSamples, EchoPeakIsThatOfTheSamples) {
         }
 }
 
-// A target straight below, by images: out and back direct or by the surface, no loss. The paths of
-// 1 ms lie 2·5 m/1500 m/s = 6.7 ms apart, so the peak is that of the loudest by itself or, of the
-// two that go one way direct and one by the surface at one time, of their sum.
+// A target straight below, by images: out and back either direct or by the surface, without loss.
+// The echoes of 1 ms arrive 2·5 m/1500 m/s = 6.7 ms apart. The peak is therefore that of the
+// loudest echo alone, or of the sum of the two that go direct one way and by the surface the other,
+// because these arrive together.
 TEST(SummaryAndSamples, EchoPeakIsThatOfImages) {
   for (const double depth : {500.0, 5000.0}) {
     Scenario s = guide(depth, pulses[1].settings);
@@ -103,13 +103,13 @@ TEST(SummaryAndSamples, EchoPeakIsThatOfImages) {
   }
 }
 
-// One path: the leading edge is at echo_time, and of a Hann window the peak half a pulse later, to
-// a sample; the level is that of the sonar equation.
+// With one path the leading edge is at echo_time and the peak of a Hann window half a pulse later,
+// within a sample. The level is that of the sonar equation.
 TEST(SummaryAndSamples, EchoTimeIsTheLeadingEdge) {
   for (const NamedPulse& pulse : {pulses[0], pulses[1], pulses[3]}) {
     Scenario s = guide(200.0, pulse.settings);
     s.propagation.max_surface_bounces = s.propagation.max_bottom_bounces = 0;
-    s.propagation.band = BandOfLosses::narrow;  // the level of the path is that of the centre
+    s.propagation.band = BandOfLosses::narrow;  // level of the path at the centre frequency
     const PingRecord record = PingSimulator(s).simulate(1);
     const TargetSummary& told = record.summary.at(0);
     const std::size_t samples = record.recording.samples;
@@ -127,8 +127,8 @@ TEST(SummaryAndSamples, EchoTimeIsTheLeadingEdge) {
   }
 }
 
-// Noise in the pulse's band: 50 dB/Hz over it. Of the samples, the mean square over a record of so
-// many independent values that 4.9 σ are 4.34·4.9/√N, by the share of the band that is recorded.
+// Noise of 50 dB/Hz in the pulse's band, against the mean square of the samples scaled by the
+// recorded share of the band. A record of N independent values scatters by 4.9 σ = 4.34·4.9/√N dB.
 TEST(SummaryAndSamples, NoiseIsThatOfTheSamples) {
   for (const NamedPulse& pulse : pulses) {
     Scenario s = guide(200.0, pulse.settings);
@@ -155,7 +155,8 @@ TEST(SummaryAndSamples, NoiseIsThatOfTheSamples) {
 /// Mean square of the samples, averaged over pings, in the steps of `/levels` [Pa²].
 struct MeanOfPings {
   std::vector<double> samples, levels;
-  double expected_db = 0.0, from = 0.0, to = 0.0;  // at the echo's time, and that in its pulse
+  double expected_db = 0.0;  // expected level at the echo's time
+  double received_db = 0.0;  // level during the echo's pulse
   double step = 0.0;
 };
 MeanOfPings mean_of(const Scenario& s) {
@@ -187,14 +188,14 @@ MeanOfPings mean_of(const Scenario& s) {
     received += at_echo / count / simulator.pings();
     mean.expected_db = told.reverberation_db;
   }
-  mean.to = db_from_power(received / (micropascal * micropascal));
+  mean.received_db = db_from_power(received / (micropascal * micropascal));
   return mean;
 }
 
-// Reverberation of a boundary and of a layer of the water: what is said of it at the echo, and in
-// every step of the levels, against the mean over 100 pings. Each ping's mean over a pulse is
-// exponential, so 4.9 σ over 100 are 4.9·4.34/√100 = 2.1 dB; a cell's middle stands for the cell,
-// and the layer's sheets for its depths, 0.5 dB.
+// Reverberation of a boundary and of a layer of the water, at the echo and in every step of the
+// levels, against the mean over 100 pings. Each ping's mean over a pulse is exponential, so 4.9 σ
+// over 100 pings are 4.9·4.34/√100 = 2.1 dB. Taking the middle of a cell for the cell, and sheets
+// for the layer's depths, adds 0.5 dB.
 TEST(SummaryAndSamples, ReverberationIsThatOfTheSamples) {
   for (const bool layer : {false, true}) {
     Scenario s = guide(200.0, pulses[1].settings);
@@ -213,7 +214,7 @@ TEST(SummaryAndSamples, ReverberationIsThatOfTheSamples) {
     s.pings.recording_duration = 0.35;
     s.pings.baseband_rate.reset();
     const MeanOfPings mean = mean_of(s);
-    EXPECT_NEAR(mean.expected_db, mean.to, 2.6) << (layer ? "layer" : "bottom");
+    EXPECT_NEAR(mean.expected_db, mean.received_db, 2.6) << (layer ? "layer" : "bottom");
     double worst = 0.0, sum = 0.0, count = 0.0;
     const double begins = 2.0 * (layer ? 55.0 : 195.0) / 1500.0;
     for (std::size_t k = 0; k < mean.levels.size(); ++k) {
@@ -229,13 +230,14 @@ TEST(SummaryAndSamples, ReverberationIsThatOfTheSamples) {
       sum += off, count += 1.0;
     }
     EXPECT_LT(worst, 2.6) << (layer ? "layer" : "bottom");
-    // Some 100 pulses' lengths of 100 pings: 4.9·4.34/√10000 = 0.2 dB of chance, the rest as
-    // above.
+    // Some 100 lengths of the pulse in 100 pings leave 4.9·4.34/√10000 = 0.2 dB of chance; the rest
+    // is as above.
     EXPECT_NEAR(sum / count, 0.0, 0.5) << (layer ? "layer" : "bottom");
   }
 }
 
-// An echo that the record does not hold, records that overlap, a line that is steered to endfire.
+// Warnings of an echo outside the record, of records that overlap, and of a line steered to
+// endfire.
 TEST(SummaryAndSamples, RecordsThatLackSoundAreWarnedOf) {
   Scenario s = guide(200.0, pulses[1].settings);
   EXPECT_EQ(checks::echo_beside_record(s), "");
@@ -244,7 +246,7 @@ TEST(SummaryAndSamples, RecordsThatLackSoundAreWarnedOf) {
   s.targets[0].track.start.position = {0.0, 400.0, 5.0};  // 0.533 s there and back
   EXPECT_NE(checks::echo_beside_record(s).find("about 0.533 s"), std::string::npos)
       << checks::echo_beside_record(s);
-  s.pings.recording_duration = 0.5335;  // 0.9 ms of a pulse of 1 ms
+  s.pings.recording_duration = 0.5335;  // holds 0.9 ms of a pulse of 1 ms
   EXPECT_NE(checks::echo_beside_record(s), "");
   s.pings.recording_duration = 0.54;
   EXPECT_EQ(checks::echo_beside_record(s), "");

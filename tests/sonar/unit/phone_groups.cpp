@@ -165,9 +165,9 @@ TEST(ReverberationPoint, TheSoundGoesSmoothlyFromOneToTheOther) {
   }
 }
 
-// The floor is 300 m below, the ping 0.2 s long: at 0.2 s sound has gone 300 m, there and back, of
-// which the way to a line 300 m away is all. After a pulse of 2 s the ellipse is wider than the
-// floor is deep. Where the record begins does not matter: the sea is the same in it.
+// The floor is 300 m below and the ping 0.2 s long. At 0.2 s sound has travelled 300 m, which is
+// just the distance to a line 300 m away. After a pulse of 2 s the ellipse reaches further than the
+// floor is deep. The beginning of the record does not matter.
 TEST(NearestReverberation, IsTheSheetsHeightOrTheEllipsesEnd) {
   Scenario s = ship(line(5, 1.0, 0.0));
   const PingGeometry geometry(s, {}, 1);

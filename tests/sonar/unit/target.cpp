@@ -122,6 +122,40 @@ TEST(Swerling, OneAndThreeLastAScanTwoAndFourAPing) {
   EXPECT_EQ(fluctuation(fluctuating(Fluctuation::none, 1), 0, 0, {}), 1.0);
 }
 
+// Draws of a target's fluctuation, and of the scattering of its echoes by a rough sea, belong to
+// the target and not to its place in the list. Synthesis is linear up to rounding, 1e-6 of the
+// peak.
+TEST(Targets, AreReceivedTogetherAsAlone) {
+  Scenario s = support::two_platforms();
+  s.environment.bottom.depth = 200.0;
+  s.environment.surface.roughness.rms_height = 0.5;
+  s.arrays[0].platform = 0;
+  s.propagation.max_surface_bounces = 1;
+  s.propagation.direct_blast = false;
+  s.pings.recording_duration = 2.0;
+  const auto target = [](const char* name, double north) {
+    return Target{.name = name,
+                  .track = {.start = {.position = {0.0, north, 60.0}}},
+                  .fluctuation = Fluctuation::swerling_2};
+  };
+  const auto received = [&](std::vector<Target> targets) {
+    s.targets = std::move(targets);
+    return PingSimulator(s).sound(1).pressure;
+  };
+  const Target near = target("near", 700.0), far = target("far", 900.0);
+  const std::vector<float> both = received({near, far}), one = received({near}),
+                           other = received({far});
+  double off = 0.0, peak = 0.0;
+  for (std::size_t i = 0; i < both.size(); ++i) {
+    off = std::max(off, std::abs(double(both[i]) - double(one[i]) - double(other[i])));
+    peak = std::max(peak, std::abs(double(both[i])));
+  }
+  EXPECT_GT(peak, 0.0);
+  EXPECT_LT(off, 1e-5 * peak);
+  s.targets = {target("twin", 700.0), target("twin", 900.0)};
+  EXPECT_NE(target_identity(s, 0), target_identity(s, 1));
+}
+
 /// What comes back of the first target.
 TargetEchoes received(const Scenario& s) {
   const PropagationPaths paths(s.environment, s.transect);

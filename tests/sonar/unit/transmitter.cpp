@@ -99,9 +99,10 @@ TEST(Line, KeepsItsLengthAtOtherFrequencies) {
   EXPECT_NEAR(higher(std::asin(0.8 * sine)), at_centre(std::asin(sine)), 1e-12);
 }
 
-// The width that is told of a steered line is that of its pattern, walked from the axis to −3 dB on
-// either side. Beyond the vertical the pattern is that of the other bearing, sin(π − θ) = sin θ. A
-// step is 1e-4 degrees; the constants u₃ have ten digits. 7 degrees at the vertical are 40.
+// The reported width of a steered line is that of its pattern, searched from the axis to −3 dB on
+// either side in steps of 1e-4 degrees. Beyond the vertical the pattern is that of the opposite
+// bearing, sin(π − θ) = sin θ. The constants u₃ have ten digits. A width of 7 degrees becomes 40 at
+// the vertical.
 TEST(Line, IsAsWideAsItsPatternWhenItIsSteered) {
   for (const Taper taper : {Taper::hann, Taper::rectangular})
     for (const double elevation : {0.0, 30.0, -50.0, 80.0, 88.0, 90.0, -90.0}) {

@@ -137,9 +137,9 @@ std::complex<double> whole_field(const Scenario& s, const Vec3& from, const Vec3
   return std::complex<double>(run(c).field.front());
 }
 
-// 400 to 600 Hz: the way through the layer's bottom lets high notes through less. The echo's
-// spectrum over that of the pulse is the square of the field, frequency by frequency: 0.1 dB and
-// 0.021 rad from 430 to 570 Hz, where narrow is off by decibels and says so.
+// From 400 to 600 Hz, less sound of high frequencies passes the bottom of the layer. The ratio of
+// the echo's spectrum to that of the pulse is the square of the field at every frequency, within
+// 0.1 dB and 0.021 rad from 430 to 570 Hz. There `narrow` is decibels off and says so.
 TEST(Diffraction, AWideBandHasTheWavesAtEveryFrequency) {
   for (const bool wide : {true, false}) {
     Scenario s = under_the_layer(500.0);

@@ -357,9 +357,9 @@ TEST(EnoughBounces, WavesAreFollowedAndKnowTheirBand) {
     const Arrivals followed = paths.follow(there, from, place, 1000.0, limits),
                    anew = paths.find(from, place, 1000.0, limits);
     ASSERT_EQ(followed.size(), anew.size()) << moved;
-    // 7 % at one wavelength: flat waves are shared among rays as one group, by the errors that rays
-    // have at either place, and are not followed themselves. 5 % would be what one wavelength
-    // needs.
+    // The tolerance is 7 % at one wavelength, where 5 % would be expected. Flat waves are shared
+    // among rays as one group, by the errors of the rays at either place, and are not followed
+    // themselves.
     EXPECT_LT(std::abs(field_of(followed, 1000.0) - field_of(anew, 1000.0)),
               0.08 * std::sqrt(energy))
         << moved;

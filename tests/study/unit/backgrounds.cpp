@@ -68,8 +68,9 @@ TEST_F(Backgrounds, WhatIsExpectedKeepsTheRateOnACliff) {
   const auto [alarms, hits] = rates(read(expected, silent), rows);
   EXPECT_NEAR(alarms, 0.1, room);
   EXPECT_NEAR(hits, 0.1, room);
-  // Cells around compare a place over the cliff with what is under it. The echo comes by the bottom
-  // as well, so that some of its cells lie there, moved to where there is no echo or not.
+  // The background of cells around the echo mixes the ground above and below the cliff. The echo
+  // also comes by the bottom, so some of its cells lie there, both at the echo and at the time
+  // without one.
   const auto [by_mean, of_mean] = rates(read(detection("around"), silent), rows);
   EXPECT_GT(by_mean, 0.9);
   EXPECT_GT(of_mean, 0.9);

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double range = 3000.0, depth = 100.0, speed = 1500.0;  // [m], [m/s]
 constexpr double source_level = 200.0, noise_level = 52.0, strength = 10.0, probability = 1e-3;
-constexpr double phones = 2.0, energy = 0.375 * 0.1;  // of a Hann window of 0.1 s [s]
+constexpr double phones = 2.0, energy = 0.375 * 0.1;  // energy of a Hann window of 0.1 s [s]
 
 /// Lengths of the direct path and of the path reflected by the surface [m].
 struct Legs {
@@ -83,14 +83,15 @@ class EchoWindow : public testing::Test {
 const std::string detection =
     "detection = { false_alarm_probability = 1e-3 }\nmatched_filter = { background = \"noise\" }\n";
 
-// Images: pairs of one and no bounce come together and add up, four times the power of one of them.
-// The whole echo follows one exponential g, so with S_k of cell k in white noise, independent cells
-// and x = −ln(1 − (1 − P)^{1/3})
+// By images, the two pairs of one path with and one without a bounce arrive together and add up to
+// four times the power of one of them. The whole echo follows one exponential g. With the SNR S_k
+// of cell k in white noise, independent cells and x = −ln(1 − (1 − P)^{1/3}),
 //
 //   P_d = 1 − ∫ e^{−g} Π_k (1 − Q₁(√(2gS_k), √(2x))) dg
 //
-// Side lobes of a Hann sweep three cells away are below 3 % of the amplitude: 0.26 dB of the weaker
-// cells, 0.02 of P_d. Binomial of the rows, 4.9 standard deviations: 1e-6.
+// Side lobes of a Hann sweep three cells away are below 3 % of the amplitude, which changes the
+// weaker cells by 0.26 dB and P_d by 0.02. The count of rows may differ by 4.9 binomial standard
+// deviations (10⁻⁶).
 TEST_F(EchoWindow, LoudestCellOfAFluctuatingEchoIsDetectedAsByTheClosedForm) {
   const double target = depth_of_three_cells();
   const Legs legs(target);
@@ -111,15 +112,16 @@ TEST_F(EchoWindow, LoudestCellOfAFluctuatingEchoIsDetectedAsByTheClosedForm) {
   constexpr int rows = 1200;
   const auto [alarms, hits] = rates(study, rows);
   EXPECT_NEAR(hits, expected, 4.9 * std::sqrt(expected * (1.0 - expected) / rows) + 0.02);
-  // The strongest pair's cell by itself, at the same probability of a false alarm.
+  // Probability in the strongest pair's cell alone, at the same probability of a false alarm.
   const double alone = std::pow(probability, 1.0 / (1.0 + snr[0]));
   EXPECT_GT(expected, alone + 0.2);
   EXPECT_LT(alarms, 0.01);
 }
 
-// The probability that is set is of all cells together, by counting: in the echo's own, of a target
-// without strength, and where there is none. Bounces off both boundaries make some ten cells.
-// Binomial of 400 rows, 4.9 standard deviations. What cells share moves the rate by P²/2 at most.
+// The set probability is that of all cells together, counted in the echo's own cells for a target
+// without strength, and at a time without an echo. Bounces off both boundaries make some ten cells.
+// The tolerance is 4.9 binomial standard deviations of 400 rows; the correlation of cells changes
+// the rate by at most P²/2.
 TEST_F(EchoWindow, FalseAlarmsAreOfAllCellsTogether) {
   constexpr int rows = 400;
   constexpr double set = 0.2;
@@ -140,7 +142,7 @@ TEST_F(EchoWindow, FalseAlarmsAreOfAllCellsTogether) {
   }
 }
 
-// One path is one cell, and nothing of what is said of it changes.
+// An echo of one path has one cell, and its measures are unchanged.
 TEST_F(EchoWindow, OnePathIsOneCell) {
   const Study study = read(detection, {"propagation.max_surface_bounces=0"});
   const PingSimulator simulator(example_of(study));

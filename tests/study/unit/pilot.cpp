@@ -34,7 +34,7 @@ double coverage(std::uint64_t tried, const Cost& cost, int trials = 1500) {
     without_end += no_end ? 1 : 0;
     held += made.interval.low <= total && (no_end || total <= made.interval.high) ? 1 : 0;
   }
-  EXPECT_LE(without_end, 0.1 * trials);  // of laws that so many rows do tell
+  EXPECT_LE(without_end, 0.1 * trials);  // for laws that so many rows support
   return static_cast<double>(held) / trials;
 }
 
@@ -83,8 +83,8 @@ TEST(Prediction, GreatestRowHoldsByCounting) {
   EXPECT_NEAR(predicted_greatest(small, 1000, 0.95, 1e6).interval.high, 1e6, 1.0);
 }
 
-// Three rows of 0.1, 10 and 0.1 s: a log-normal law of their scatter (σ = 2.7) has its 97.5 % some
-// 10⁵ times over the mean, which three rows cannot support.
+// For rows of 0.1, 10 and 0.1 s a log-normal law with their scatter (σ = 2.7) has its 97.5 %
+// quantile some 10⁵ times above the mean, which three rows cannot support.
 TEST(Prediction, NoUpperBoundThatTheRowsDoNotSupport) {
   const std::vector<double> uneven{0.1, 10.0, 0.1};
   const Predicted all = predicted_total(uneven, 1, 1000, 0.95);

@@ -144,7 +144,7 @@ class PlacementOfSensors : public ::testing::Test {
   support::TemporaryDirectory folder_;
 };
 
-// Five maps of 81 cells in 20 000 draws are 32 MB and more: refused before any is made.
+// Five maps of 81 cells in 20 000 draws need at least 32 MB and are refused before any is made.
 TEST_F(PlacementOfSensors, MapsKeepToRunMemory) {
   const std::string head =
       "scenario = \"buoy.toml\"\nsensors = 2\nmap_error = \"cells\"\njudging_draws = 2\n";

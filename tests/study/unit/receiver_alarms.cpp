@@ -10,8 +10,8 @@
 namespace asdic::detail::study {
 namespace {
 
-// The receiver's false alarms a ping over what even noise makes: a warning where the mean is over
-// it for certain. 60 rows of 12 ± 1 and of 1 ± 1.
+// A warning is given if the receiver's mean number of false alarms per ping is certainly above that
+// of even noise. 60 rows of 12 ± 1, and of 1 ± 1.
 TEST(ReceiverAlarms, FalseAlarmsThatNoiseDoesNotMakeAreWarnedOf) {
   const support::TemporaryDirectory folder;
   const Study study = read_study(folder.write(

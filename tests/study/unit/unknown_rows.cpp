@@ -24,7 +24,7 @@ class UnknownRows : public testing::Test {
   support::TemporaryDirectory folder_;
 };
 
-// Why an answer is not known.
+// The row and the summary give the reason why an answer is not known.
 TEST_F(UnknownRows, SaysWhyItIsNotKnown) {
   const auto unknown = [&](const std::string& measure, std::vector<std::string> overrides) {
     const Study study = read(measure, std::move(overrides));
@@ -39,7 +39,7 @@ TEST_F(UnknownRows, SaysWhyItIsNotKnown) {
               testing::HasSubstr("fewer than 12 of the cells around the echo are free"));
 }
 
-// A study of which nothing is known says so after ten rows, and why.
+// A study in which no answer is known says so after ten rows and gives the reason.
 TEST_F(UnknownRows, TenRowsOfWhichNothingIsKnownAreNotedAtOnce) {
   const auto notes_of = [&](std::vector<std::string> overrides, std::uint64_t rows) {
     const Study study = read(detection, std::move(overrides));
