@@ -11,8 +11,9 @@ def rows(factors, seed, tries=12):
     names = list(factors)
     draw = random.Random(seed)
     while True:
-        open_pairs = {(a, i, b, j) for n, a in enumerate(names) for b in names[n + 1:]
-                      for i in range(len(factors[a])) for j in range(len(factors[b]))}
+        # A dictionary, since a set's order is another in every process.
+        open_pairs = dict.fromkeys((a, i, b, j) for n, a in enumerate(names) for b in names[n + 1:]
+                                   for i in range(len(factors[a])) for j in range(len(factors[b])))
         while open_pairs:
             best, gain = None, -1
             for _ in range(tries):
@@ -22,7 +23,7 @@ def rows(factors, seed, tries=12):
                     best, gain = row, new
             for n, a in enumerate(names):
                 for b in names[n + 1:]:
-                    open_pairs.discard((a, best[a], b, best[b]))
+                    open_pairs.pop((a, best[a], b, best[b]), None)
             yield {name: factors[name][level] for name, level in best.items()}
             if gain < len(names) // 4:  # what is left are a few pairs: a row each is not worth it
                 break

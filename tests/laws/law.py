@@ -57,6 +57,14 @@ def still(s):
     return s
 
 
+def smooth(s):
+    """Boundaries that scatter nothing."""
+    for boundary in (s["environment"]["bottom"], s["environment"].get("surface", {})):
+        for key in [k for k in boundary if k.startswith(("roughness", "bubbles"))]:
+            del boundary[key]
+    return s
+
+
 def one_place(s, phones=1):
     """One station with an omnidirectional source and `phones` phones where it is, one point target."""
     s["platform"] = s["platform"][:1]

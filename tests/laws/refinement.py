@@ -86,7 +86,7 @@ def finer_floor(s, p):
     """A node put on a facet of the floor changes nothing. A ray that strikes it within the search's 1e-4 m is lost: 2 %."""
     s = plain(s)
     from law import water_depth
-    depth = water_depth(s)
+    depth = 1.05 * water_depth(s)  # below all that is in the water
     e = s["environment"]
     e.pop("area", None)
     e["bottom"].pop("depth", None)
@@ -119,7 +119,7 @@ def finer_map(s, p):
     """A map of a plane floor sampled twice as finely is the same floor. Four-byte heights: 1e-7 of the depth."""
     s = stratified(plain(s))
     e = s["environment"]
-    depth = e["bottom"].pop("depth")
+    depth = e["bottom"].pop("depth") / 0.8  # below all that is in the water
     cell = (max(abs(x) for x in s["target"][0].get("position", [100.0, 0.0])[:2]) + 50.0) / 111195.0  # degrees
     e["origin"] = {"latitude_deg": 0.0, "longitude_deg": 0.0}
     how = p("interpolation", ["bicubic", "faceted"])
@@ -132,10 +132,6 @@ def finer_map(s, p):
 
     e["area"] = {"bathymetry": {"file": "floor.asc", "interpolation": how}}
     s["_files"] = {"floor.asc": grid(9, cell)}
-    lowest = 0.9 * depth * 0.9
-    for one in s["platform"] + s["target"]:
-        for point in one.get("waypoints", [one]):
-            point["position"][2] = min(point["position"][2], lowest - 0.05 * depth)
     first = ping(s)
     s2 = copied(s)
     s2["_files"] = {"floor.asc": grid(17, cell / 2)}
