@@ -11,9 +11,8 @@
 namespace asdic::detail {
 namespace {
 
-constexpr double tail_error = 3e-5;    // of the peak, −90 dB
-constexpr double slope_share = 0.075;  // half the filter's slope over the width of its flat part
-constexpr double ringing_over_rate = 100.0;  // of a cut pulse: 39 over its flat part either side
+constexpr double tail_error = 3e-5;      // of the peak, −90 dB
+constexpr double slope_share = 0.075;    // half the filter's slope over the width of its flat part
 constexpr double slope_steepness = 2.7;  // ½ erfc(2.7) = 7e-5 is left where the slope is cut off
 
 }  // namespace
@@ -83,12 +82,12 @@ double half_band_of_energy(const BandLimitedPulse& pulse, double left_out) {
 namespace {
 
 /// Full width in ν [Hz] of the frequencies f + ν of a pulse that a complex recording holds under
-/// every Doppler factor, |η(f + ν) − f_rec| ≤ rate/2. Two bins of the shortest period of a pulse
-/// that is cut so, and rings for it, are left for rounding the carrier and the band to bins.
+/// every Doppler factor, |η(f + ν) − f_rec| ≤ rate/2. Two bins of the period are left for rounding
+/// the carrier and the band to bins.
 double recorded_width(const Pulse& sent, const Recording& record, double max_doppler) {
   if (!record.is_complex()) return infinity;
   const double f = sent.centre_frequency();
-  const double bin = 1.0 / (sent.duration() + ringing_over_rate / record.sample_rate);
+  const double bin = record.sample_rate / static_cast<double>(record.samples);
   const double half = 0.5 * record.sample_rate - 2.0 * bin - std::abs(f - record.carrier);
   return std::max(2.0 * (half - f * max_doppler) / (1.0 + max_doppler), sent.bandwidth_40db());
 }

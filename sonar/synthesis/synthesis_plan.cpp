@@ -149,6 +149,10 @@ Synthesizer::Plan::Plan(std::vector<BandLimitedPulse> sounds, double duration, s
 }
 
 Synthesizer::Plan::Clock Synthesizer::Plan::clock(double least) const {
+  // What a pulse is cut to where it fills the recorded band goes by the record's length as well.
+  constexpr double cut = 0.7;
+  if (recording.is_complex() && least > cut * recording.sample_rate)
+    least = std::max(least, recording.sample_rate);
   const double units = recording.sample_rate / static_cast<double>(unit);  // a second
   const std::size_t to_a_unit = fast_fft_length(static_cast<std::size_t>(std::ceil(least / units)));
   return {.rate = static_cast<double>(to_a_unit) * units,
