@@ -238,7 +238,9 @@ def legs_are_waves(s, p):
     """A leg's paths add up to the wave equation's field: 41 % of it over ten wavelengths of range, by which 3 dB of energy are off.
 
     Nine places along ten wavelengths, the coherent sum of paths at each, against `asdic field` by waves at the same
-    ones. Rays are stationary phase: right where depth is many wavelengths, so the water is twenty of them at least.
+    ones. Rays are stationary phase: right where depth is many wavelengths, so the water is twenty of them at least, and
+    where boundaries reflect plane waves in one place: both ends are a wavelength from them, and layers and tables that
+    change fast with the angle, so that beams come out elsewhere, are left out.
     """
     s = smooth(one_place(still(stratified(plain(s)))))  # what is scattered is the rays' alone
     e = s["environment"]
@@ -250,12 +252,18 @@ def legs_are_waves(s, p):
         for key in boundary:
             if key.endswith("per_metre"):  # the same loss per wavelength as at the drawn frequency
                 boundary[key] *= hz / s["_hz"]
-        for layer in boundary.get("layer", ()):  # and as many wavelengths
-            layer["thickness"] *= s["_hz"] / hz
+        if boundary.get("kind") == "layered":
+            del boundary["layer"]
+            boundary["kind"] = "elastic" if "shear_speed" in boundary else "fluid"
+        if boundary.get("kind") == "table":
+            boundary |= {"magnitude": boundary["magnitude"][1:2] * 3, "phase_deg": [180.0] * 3}
     e.pop("spreading", None)  # other laws than the wave equation's
     e.pop("biology", None)  # losses with depth are left to rays
     e.pop("attenuation", None)
     a, b = s["platform"][0]["position"], s["target"][0]["position"]
+    top = e.get("surface", {}).get("depth", 0.0)
+    for end in (a, b):
+        end[2] = min(max(end[2], top + wave), depth - wave)
     r = min(max(math.hypot(a[0] - b[0], a[1] - b[1]), depth), 15 * depth)
     s["propagation"] |= {"max_surface_bounces": "auto", "max_bottom_bounces": "auto"}
     # "auto" follows what arrives in the record: steep paths of ten times the way as well.

@@ -52,9 +52,10 @@ def isovelocity_as_a_table(s, p):
 @law
 def section_of_equal_profiles(s, p):
     """A section of one profile repeated is that profile. Two solvers find the rays, delays to 1e-9 s, amplitudes to 1e-6
-    (docs/theory/eigenrays.md, Evidence); waves are for the layered one alone, so without diffraction."""
+    (docs/theory/eigenrays.md, Evidence); waves are for the layered one alone, so without diffraction. Each finds out for
+    itself where a plane wave is enough for an array, so neither may."""
     s = stratified(plain(s))
-    s["propagation"]["diffraction"] = False
+    s["propagation"] |= {"diffraction": False, "exact_per_phone": True}
     s["environment"]["sound_speed"] = table(s, "c-linear", p)
     first = ping(s)
     s2 = copied(s)
@@ -104,7 +105,7 @@ def finer_floor(s, p):
 def flat_shape(s, p):
     """A floor of one depth told by a shape is flat. Two solvers, as `section_of_equal_profiles`."""
     s = stratified(plain(s))
-    s["propagation"]["diffraction"] = False
+    s["propagation"] |= {"diffraction": False, "exact_per_phone": True}
     first = ping(s)
     s2 = copied(s)
     bottom = s2["environment"]["bottom"]
