@@ -159,7 +159,8 @@ double change_across_band(const EchoContext& context, const Transmitter& project
                           std::span<const EchoPath> paths, double half_width) {
   using Amplitudes = std::vector<std::complex<double>>;
   double most = 0.0;
-  for (const double f : {context.frequency - half_width, context.frequency + half_width}) {
+  for (const double f :
+       {std::max(1.0, context.frequency - half_width), context.frequency + half_width}) {
     const BandPart at = band_part(context, projector, f);
     const ChangingLegs<Amplitudes> legs(context.paths, paths, [&](const MetLeg& leg) {
       const bool still = leg.by_waves() && too_narrow_to_change(leg, half_width, tolerable_change);
