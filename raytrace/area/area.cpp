@@ -323,7 +323,12 @@ void Area::put_water(const Vec2& place, double bearing, double reach, Environmen
     first = last;
   }
   plane.water = SoundSpeedProfile::table(levels, columns.front(), Interpolation::c_linear);
-  const bool alike = ranges.size() == 2 && columns.front() == columns.back();
+  // The same water everywhere, but for rounding between the map's columns.
+  constexpr double same = 1e-12;
+  const bool alike =
+      ranges.size() == 2 &&
+      std::equal(columns.front().begin(), columns.front().end(), columns.back().begin(),
+                 [](double one, double other) { return std::abs(one - other) <= same * one; });
   if (!alike) plane.section = SoundSpeedSection(ranges, levels, speeds);
 }
 
