@@ -355,7 +355,12 @@ void put_waves(const EigenraySolver& solver, double source_depth, double receive
   }
   const bool by_cycles = wrong > tolerable_error * tolerable_error * energy;
   // Up to twice that error waves of each history fade in: nothing jumps where they begin to do.
-  const double more = std::sqrt(reflected / energy) / tolerable_error - 1.0,
+  // A history that turns in the water holds rays off the boundaries as well, seconds apart, so that
+  // what it lacks cannot be told from the others': then rays keep the reflection of plane waves.
+  const bool turned = std::any_of(found.begin(), found.end(), [](const Arrival& ray) {
+    return std::norm(ray.amplitude) > 0.0 && ray.upper_turns + ray.lower_turns > 0;
+  });
+  const double more = turned ? 0.0 : std::sqrt(reflected / energy) / tolerable_error - 1.0,
                x = more > 0.0 ? std::min(more, 1.0) : 0.0, faded = x * x * (3.0 - 2.0 * x);
   if (!by_cycles && !(faded > 0.0)) return;
 
