@@ -57,7 +57,7 @@ BranchWaves::BranchWaves(const Environment& ocean, const BranchNeed& need) {
   window_ = branch_window(need.steepest, column.largest_wavenumber(), need.furthest);
   k2_ = {column.at_source(), column.at_receiver()};
   for (std::size_t i = 0; i < ends_.size(); ++i) {
-    // What Airy's length turns the phase by over the whole way.
+    // Phase that Airy's length adds over the whole way [rad].
     const double k2 = k2_[i].k2.real(), slope = k2_[i].slope;
     const double turned = std::cbrt(slope * slope) / std::sqrt(k2) * need.furthest;
     ends_[i] = {k2, slope, turned > noticed_radians};

@@ -16,7 +16,7 @@ namespace asdic::detail {
 /// core. A target under way asks for it every few wavelengths.
 inline constexpr double most_cycle_steps = 5e5;
 
-/// What decides the BranchWaves of one ocean.
+/// Key of a BranchWaves, within one ocean.
 struct BranchNeed {
   double upper, lower;         ///< depths of the ends [m]
   double frequency, furthest;  ///< [Hz], range [m]
@@ -47,7 +47,7 @@ class BranchWaves {
   [[nodiscard]] bool affordable() const noexcept { return !kernels_.empty(); }
   [[nodiscard]] std::size_t bytes() const noexcept;
 
-  /// How much of a wavenumber is summed, 0 … 1. \param wavenumber  [1/m]
+  /// Weight of a wavenumber in the sums, 0 … 1. \param wavenumber  [1/m]
   [[nodiscard]] double share(double wavenumber) const noexcept;
 
   /// p of all histories with up to so many cycles. \param range  up to the furthest [m]
@@ -57,7 +57,7 @@ class BranchWaves {
   struct Place {
     int kind, cycles;
   };
-  /// Which of them a ray's history is. \param from_upper  as it goes from the upper end to the
+  /// Finds the history of a ray. \param from_upper  as it goes from the upper end to the
   /// lower one   \param turns_above, turns_below  its vertices are turning points
   [[nodiscard]] Place place_of(Branch from_upper, double wavenumber, bool turns_above,
                                bool turns_below) const noexcept;
@@ -71,7 +71,7 @@ class BranchWaves {
     [[nodiscard]] double resolved(double wavenumber) const noexcept;
     [[nodiscard]] bool is_level(double wavenumber) const noexcept;
   };
-  /// Of one wavenumber.
+  /// Integrand at one wavenumber.
   struct Kernel {
     std::array<std::complex<double>, 4> first;
     std::complex<double> cycle;

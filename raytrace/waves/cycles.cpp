@@ -133,7 +133,7 @@ constexpr double least_weight = 1e-3;     // of a ray in the window of wavenumbe
 constexpr double resolved = 0.99;         // of a wavenumber that is summed history by history
 constexpr double of_a_wave = 0.1;         // what its amplitude may be off by at most
 
-/// By the delay of a ray.
+/// Phase factor of a ray's delay.
 Complex turned(const Arrival& ray, double frequency) {
   return std::polar(1.0, -2.0 * pi * std::fmod(frequency * ray.delay, 1.0));
 }
@@ -189,7 +189,7 @@ void share(const WaveGroup& group, const Arrivals& found, const std::vector<RayE
   }
 }
 
-/// What is found between two places.
+/// A leg, its ocean and its rays.
 struct FoundLeg {
   const Environment& ocean;
   double source_depth, receiver_depth, range, frequency;

@@ -84,13 +84,13 @@ using CyclesKeeper =
 /// end of their family, those that turn beside a corner of the profile, and those that boundaries
 /// reflect otherwise than plane waves. What a term of CycleWaves has more than its rays is shared
 /// by them, most by those whose amplitude is least sure (ray_errors.h): their sum is the waves'
-/// field. Where reflection is what is wrong, each ray that is not horizontal at an end has the
-/// waves of its own history (BranchWaves) before. All are of kind `caustic` then, each with its own
-/// delay and angles. Rays whose amplitude changes by less than 0.1 % of the whole stay as they are,
-/// and all do where their errors would be 1 % of the whole at most, and where it would take more
-/// than `most_cycle_steps`. What a `diffracted` arrival holds is left to it.
-/// \param solver  layered()   \param found  all arrivals of these places within the limits
-/// \param keeper, branches  none: made anew   \throws Interrupted
+/// field. Where reflection is what is wrong and no ray turns in the water, each ray has the waves
+/// of its own history (BranchWaves) before. All are of kind `caustic` then, each with its own delay
+/// and angles. Rays whose amplitude changes by less than 0.1 % of the whole stay as they are, and
+/// all do where their errors would be 1 % of the whole at most, and where it would take more than
+/// `most_cycle_steps`. What a `diffracted` arrival holds is left to it. \param solver  layered()
+/// \param found  all arrivals of these places within the limits \param keeper, branches  without
+/// them nothing is kept   \throws Interrupted
 void put_waves(const EigenraySolver& solver, double source_depth, double receiver_depth,
                double range, double frequency, const PathLimits& limits, Arrivals& found,
                const CyclesKeeper& keeper = {}, const BranchKeeper& branches = {});

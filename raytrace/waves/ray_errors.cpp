@@ -60,7 +60,7 @@ struct FlatWall {
               .density = ocean.water_density.at(boundary.depth),
               .frequency = frequency} {}
 
-  /// Of so many bounces, at an angle; below the horizontal as a line goes on through it.
+  /// Reflection of all bounces at an angle [rad]; negative angles continue it as a straight line.
   [[nodiscard]] Complex at(double grazing, int bounces) const {
     const auto r = [&](double angle) {
       return all_bounces(reflection_coefficient(material, std::min(angle, 0.5 * pi), water),

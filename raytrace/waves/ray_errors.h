@@ -18,10 +18,10 @@ namespace asdic::detail {
 /// rays [1/m]. \param wavenumber  of the source's depth [1/m]
 [[nodiscard]] double fresnel_zone(const Arrival& ray, double wavenumber) noexcept;
 
-/// How far what boundaries reflect as spherical waves differs from what they reflect as plane ones.
-/// With the product F of a ray's reflections over the wavenumber ξ, and r(ξ) the range of rays, the
-/// next order of stationary phase is ½F″/r′: here by differences over fresnel_zone(), so that a
-/// critical angle nearby counts by what it does there. More than the ray itself where it is faint.
+/// Estimates the error of rays that have the boundaries' reflection of plane waves. F(ξ) is the
+/// product of a ray's reflections over the wavenumber, r(ξ) the range of rays, and the next order
+/// of stationary phase ½F″/r′, by differences over fresnel_zone(), so that a critical angle nearby
+/// counts by what it does there. It may exceed the ray itself where that is faint.
 /// \param ocean  is_layered(); its roughness does not count   \return [rays] of the amplitude
 [[nodiscard]] std::vector<double> reflection_errors(const Environment& ocean, double source_depth,
                                                     double frequency, const Arrivals& rays);

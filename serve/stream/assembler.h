@@ -12,7 +12,7 @@
 namespace asdic::detail::serve {
 
 /// Puts the packets of a stream together, in whatever order they come, and reports what is missing.
-/// For any input memory stays bounded, and no message is made of pieces of different messages.
+/// Memory stays bounded for any input, and no message is made of pieces of different messages.
 ///
 /// Blocks come out in their order. One that lacks a piece is waited for until `window` blocks later
 /// something has arrived; then it is lost, whole. Before join() no block is taken, because the

@@ -149,7 +149,7 @@ Synthesizer::Plan::Plan(std::vector<BandLimitedPulse> sounds, double duration, s
 }
 
 Synthesizer::Plan::Clock Synthesizer::Plan::clock(double least) const {
-  // What a pulse is cut to where it fills the recorded band goes by the record's length as well.
+  // The filter of a pulse that fills the recorded band depends on the record's length as well.
   constexpr double cut = 0.7;
   if (recording.is_complex() && least > cut * recording.sample_rate)
     least = std::max(least, recording.sample_rate);
