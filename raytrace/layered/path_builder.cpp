@@ -5,6 +5,7 @@
 
 #include "core/units.h"
 #include "raytrace/layered/simd_reflection.h"
+#include "raytrace/math/integer_power.h"
 #include "raytrace/ocean/tube_amplitude.h"
 
 namespace asdic::detail {
@@ -13,16 +14,6 @@ namespace {
 /// A ray that turns beside a maximum of c spreads so much that no number leads to the receiver: its
 /// path is left out, at 10⁻⁸ of the others' amplitude and less [m].
 constexpr double furthest_miss = 1.0;
-
-/// One factor after the other while they are few; of more, by squares.
-std::complex<double> integer_power(std::complex<double> base, int exponent) {
-  constexpr int few = 16;
-  std::complex<double> product = 1.0;
-  for (; exponent > few; exponent /= 2, base *= base)
-    if (exponent % 2 == 1) product *= base;
-  for (int i = 0; i < exponent; ++i) product *= base;
-  return product;
-}
 
 double grazing_at(const RayParameter& ray, double speed) {
   return std::atan2(std::sqrt(std::max(0.0, ray.sine2(speed))), ray.slowness * speed);

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "raytrace/beams/fan.h"
+#include "raytrace/math/integer_power.h"
 #include "raytrace/parallel/parallel.h"
 #include "raytrace/tracing/reflected.h"
 
@@ -84,14 +85,6 @@ struct Wall {
     return mirror * left_by_roughness(boundary.roughness, std::sin(grazing), wavenumber, coherent);
   }
 };
-
-/// z^n, n ≥ 0.
-Complex power(Complex z, int n) noexcept {
-  Complex result = 1.0;
-  for (; n > 0; n >>= 1, z *= z)
-    if ((n & 1) != 0) result *= z;
-  return result;
-}
 
 class ImageGuide {
  public:
@@ -225,7 +218,7 @@ class ImageGuide {
     const double length = std::hypot(to.range, rise);
     const double amplitude = launch(elevation) * spreading(length) * std::exp(-loss_ * length);
     const Complex reflection =
-        power(surface_.at(grazing), surface) * power(bottom_.at(grazing), bottom);
+        integer_power(surface_.at(grazing), surface) * integer_power(bottom_.at(grazing), bottom);
     const double intensity = amplitude * amplitude * std::norm(reflection);
     tally.sum += coherent_ ? amplitude * reflection * std::polar(1.0, -wavenumber_ * length)
                            : Complex(intensity);

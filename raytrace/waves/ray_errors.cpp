@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/units.h"
+#include "raytrace/math/integer_power.h"
 #include "raytrace/waves/focus.h"
 
 namespace asdic::detail {
@@ -41,14 +42,6 @@ std::vector<Corner> corners_of(const Environment& ocean, bool boundaries) {
   return corners;
 }
 
-/// z^n, n ≥ 0.
-Complex all_bounces(Complex z, int n) noexcept {
-  Complex result = 1.0;
-  for (; n > 0; n >>= 1, z *= z)
-    if ((n & 1) != 0) result *= z;
-  return result;
-}
-
 /// A boundary, for rays of a slowness.
 struct FlatWall {
   const BoundaryMaterial& material;
@@ -63,8 +56,8 @@ struct FlatWall {
   /// Reflection of all bounces at an angle [rad]; negative angles continue it as a straight line.
   [[nodiscard]] Complex at(double grazing, int bounces) const {
     const auto r = [&](double angle) {
-      return all_bounces(reflection_coefficient(material, std::min(angle, 0.5 * pi), water),
-                         bounces);
+      return integer_power(reflection_coefficient(material, std::min(angle, 0.5 * pi), water),
+                           bounces);
     };
     return grazing < 0.0 ? 2.0 * r(0.0) - r(-grazing) : r(grazing);
   }

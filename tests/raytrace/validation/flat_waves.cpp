@@ -32,12 +32,8 @@ Energy energy_of(const Environment& ocean, double frequency, double source, doub
   return energy;
 }
 
-double db(double power) { return 10.0 * std::log10(power); }
-
-// The Mediterranean in summer, at 40 km, with a receiver near the minimum of the speed, a node of
-// the profile. The paths' energy is that of the modes within 3 dB, which allows for interference
-// within a cycle. It was 19 to 35 dB higher.
-TEST(FlatWaves, AboutTheAxisOfAProfile) {
+/// The Mediterranean in summer.
+Environment mediterranean() {
   const std::vector<double> depth = {0, 15, 30, 50, 80, 120, 200, 400, 800, 1500, 2600},
                             speed = {1536, 1535, 1525,   1515,   1510.5, 1509,
                                      1510, 1513, 1519.2, 1530.5, 1548.5};
@@ -45,6 +41,16 @@ TEST(FlatWaves, AboutTheAxisOfAProfile) {
   ocean.bottom = {.depth = 2600.0,
                   .material = FluidHalfSpace{
                       .speed = 1550.0, .density = 1500.0, .attenuation_db_per_wavelength = 0.1}};
+  return ocean;
+}
+
+double db(double power) { return 10.0 * std::log10(power); }
+
+// The Mediterranean in summer, at 40 km, with a receiver near the minimum of the speed, a node of
+// the profile. The paths' energy is that of the modes within 3 dB, which allows for interference
+// within a cycle. It was 19 to 35 dB higher.
+TEST(FlatWaves, AboutTheAxisOfAProfile) {
+  const Environment ocean = mediterranean();
   const double f = 200.0, omega = 2.0 * pi * f, range = 40311.0;
   const auto modes = support::depth_modes(
       f, 3000.0, false, 3000, [&](double z) { return z <= 2600.0 ? ocean.water.at(z).c : 1550.0; },
@@ -62,13 +68,7 @@ TEST(FlatWaves, AboutTheAxisOfAProfile) {
 // no more found beside where they were. All together are the paths found there. Such legs had rays'
 // amplitudes, and their sum differed by half.
 TEST(FlatWaves, PathsThatAreFollowedHaveThem) {
-  const std::vector<double> depth = {0, 15, 30, 50, 80, 120, 200, 400, 800, 1500, 2600},
-                            speed = {1536, 1535, 1525,   1515,   1510.5, 1509,
-                                     1510, 1513, 1519.2, 1530.5, 1548.5};
-  Environment ocean{.water = SoundSpeedProfile::table(depth, speed, Interpolation::pchip)};
-  ocean.bottom = {.depth = 2600.0,
-                  .material = FluidHalfSpace{
-                      .speed = 1550.0, .density = 1500.0, .attenuation_db_per_wavelength = 0.1}};
+  const Environment ocean = mediterranean();
   const PropagationPaths paths(ocean, {});
   const PathLimits limits{.max_surface_bounces = 3, .max_bottom_bounces = 3, .diffraction = true};
   const double f = 200.0;
