@@ -20,11 +20,12 @@ namespace {
 
 /// Properties of a leg across the pulse's band.
 struct AcrossThePulse {
-  double change_db = 0.0;  ///< largest change of waves from the centre to either edge
-  double change = 0.0;     ///< largest change of all paths, over the leg's amplitude
-  double error = 0.0;      ///< error of the interpolation, over the largest value
-  double corners = 0.0;    ///< share of the leg's energy, of turned_at_corners()
-  double caustics = 0.0;   ///< the same, of unsure_amplitudes()
+  double change_db = 0.0;   ///< largest change of waves from the centre to either edge
+  double change = 0.0;      ///< largest change of all paths, over the leg's amplitude
+  double error = 0.0;       ///< error of the interpolation, over the largest value
+  double corners = 0.0;     ///< share of the leg's energy, of turned_at_corners()
+  double caustics = 0.0;    ///< the same, of unsure_amplitudes()
+  double reflection = 0.0;  ///< error of plane-wave reflection, over the leg's amplitude
 };
 
 AcrossThePulse across_the_pulse(const PropagationPaths& paths, const MetLeg& leg,
@@ -136,6 +137,29 @@ double turned_at_corners(const Environment& ocean, const Arrivals& paths, double
   return all > 0.0 ? off / all : 0.0;
 }
 
+/// Error of rays that have the boundaries' reflection of plane waves, over the leg's amplitude.
+double reflection_error(const Environment& ocean, double source_depth, double frequency,
+                        const Arrivals& paths) {
+  const std::vector<double> errors = reflection_errors(ocean, source_depth, frequency, paths);
+  double all = 0.0, off = 0.0;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    const double energy = std::norm(paths[i].amplitude), error = std::min(errors[i], 1.0);
+    all += energy;
+    if (paths[i].kind == ArrivalKind::ray) off += energy * error * error;
+  }
+  return all > 0.0 ? std::sqrt(off / all) : 0.0;
+}
+
+std::string line_of_reflection(double error, const std::string& whose) {
+  constexpr double tolerable_error = 0.12;  // 1 dB
+  if (!(error > tolerable_error)) return "";
+  return formatted(
+      "propagation: the sound to or from %s is reflected as plane waves are, by which about %.0f "
+      "%% "
+      "of its pressure may be off",
+      whose.c_str(), 100.0 * error);
+}
+
 /// Sound of rays from a source at a place.
 struct Reached {
   bool in_the_water = false;  ///< by a ray without the bottom
@@ -227,7 +251,9 @@ std::vector<std::string> wave_warnings(const PingGeometry& geometry, const Propa
         received, scenario.propagation.band);
     across.caustics =
         unsure_amplitudes(paths.along_transect(), from.z(), to.z(), centre, limits, arrivals);
-    across.corners = turned_at_corners(paths.along_transect().environment(), arrivals, centre);
+    const Environment& ocean = paths.along_transect().environment();
+    across.corners = turned_at_corners(ocean, arrivals, centre);
+    across.reflection = reflection_error(ocean, from.z(), centre, arrivals);
     return across;
   };
   std::vector<std::string> found;
@@ -239,7 +265,8 @@ std::vector<std::string> wave_warnings(const PingGeometry& geometry, const Propa
     const AcrossThePulse there = judged(source, place), home = judged(place, receiver);
     add_warnings({line_of(there, name), line_of(home, name),
                   line_of_share(std::max(there.corners, home.corners), name, beside_corners),
-                  line_of_share(std::max(there.caustics, home.caustics), name, at_caustics)},
+                  line_of_share(std::max(there.caustics, home.caustics), name, at_caustics),
+                  line_of_reflection(std::max(there.reflection, home.reflection), name)},
                  found);
   }
   if (scenario.propagation.direct_blast && !geometry.is_own(array))

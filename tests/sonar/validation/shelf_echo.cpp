@@ -1,5 +1,6 @@
 // Echoes on a continental shelf, sample by sample, against wavenumber integration that shares
 // nothing with the program (tests/data/shelf/README.md): thermoclines, sand and mud.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -188,6 +189,22 @@ TEST(ShelfEcho, AcrossASmoothLayerIsTheWavesByDefault) {
 // With the floor's reflection at the angles of rays these have 0.944 and 0.74.
 TEST(ShelfEcho, OffSandIsTheWavesByDefault) { expect_truth(pekeris(), BandOfLosses::automatic); }
 TEST(ShelfEcho, OffMudIsTheWavesByDefault) { expect_truth(mud(), BandOfLosses::automatic); }
+// A gradient in which flat rays turn leaves the floor's reflection at the angles of rays: the echo
+// correlates 0.73 with an integral over wavenumbers.
+TEST(ShelfEcho, OffMudUnderAGradientIsWarnedOf) {
+  using testing::Contains, testing::HasSubstr, testing::Not;
+  Shelf shelf = mud();
+  const std::array phones = {0};
+  const auto warnings = [&] {
+    Scenario s = scenario_of(shelf, phones);
+    s.propagation.band = BandOfLosses::automatic;
+    return PingSimulator(s).judge_paths().warnings;
+  };
+  EXPECT_THAT(warnings(), Not(Contains(HasSubstr("plane waves"))));
+  const std::vector<double> depth = {0.0, 80.0}, speed = {1500.0, 1501.6};
+  shelf.sea.water = SoundSpeedProfile::table(depth, speed, Interpolation::c_linear);
+  EXPECT_THAT(warnings(), Contains(HasSubstr("plane waves")));
+}
 
 /// Largest energy of the difference between phones of the line and the same phones alone [dB].
 double beside_alone_db(const Shelf& shelf, BandOfLosses band, std::span<const int> phones) {
