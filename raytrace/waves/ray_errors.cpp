@@ -42,15 +42,15 @@ std::vector<Corner> corners_of(const Environment& ocean, bool boundaries) {
   return corners;
 }
 
-/// A boundary, for rays of a slowness.
+/// A boundary as it is at the source, for rays of a slowness.
 struct FlatWall {
   const BoundaryMaterial& material;
   WaterAtBoundary water;
 
   FlatWall(const Environment& ocean, const Boundary& boundary, double frequency)
-      : material(boundary.material),
-        water{.speed = ocean.water.at(boundary.depth).c,
-              .density = ocean.water_density.at(boundary.depth),
+      : material(boundary.material_at(0.0)),
+        water{.speed = sound_speed(ocean, 0.0, boundary.depth_at(0.0)).c,
+              .density = ocean.water_density.at(boundary.depth_at(0.0)),
               .frequency = frequency} {}
 
   /// Reflection of all bounces at an angle [rad]; negative angles continue it as a straight line.
@@ -86,7 +86,7 @@ std::vector<double> reflection_errors(const Environment& ocean, double source_de
                                       double frequency, const Arrivals& rays) {
   constexpr double most = 4.0;  // of the difference: any phases
   const FlatWall surface(ocean, ocean.surface, frequency), bottom(ocean, ocean.bottom, frequency);
-  const double k = 2.0 * pi * frequency / ocean.water.at(source_depth).c;
+  const double k = 2.0 * pi * frequency / sound_speed(ocean, 0.0, source_depth).c;
   std::vector<double> errors;
   for (const Arrival& ray : rays) {
     errors.push_back(0.0);

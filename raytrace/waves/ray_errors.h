@@ -22,7 +22,8 @@ namespace asdic::detail {
 /// product of a ray's reflections over the wavenumber, r(ξ) the range of rays, and the next order
 /// of stationary phase ½F″/r′, by differences over fresnel_zone(), so that a critical angle nearby
 /// counts by what it does there. It may exceed the ray itself where that is faint.
-/// \param ocean  is_layered(); its roughness does not count   \return [rays] of the amplitude
+/// \param ocean  as it is at the source; its roughness does not count
+/// \return [rays] of the amplitude
 [[nodiscard]] std::vector<double> reflection_errors(const Environment& ocean, double source_depth,
                                                     double frequency, const Arrivals& rays);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/geometry.h"
 #include "core/text.h"
 #include "raytrace/warnings/warnings.h"
 #include "raytrace/waves/diffraction.h"
@@ -246,6 +247,10 @@ std::vector<std::string> wave_warnings(const PingGeometry& geometry, const Propa
         scenario.propagation,
         enough_bounces(paths, scenario.propagation, from, to, centre, end_of_record(scenario)));
     const Arrivals arrivals = paths.find(from, to, centre, limits);
+    const Separation way = separation(from, to);
+    const auto solver = paths.solver(paths.plane(from, way.bearing, way.range));
+    const double reflection = reflection_error(solver->environment(), from.z(), centre, arrivals);
+    if (!paths.layered()) return AcrossThePulse{.reflection = reflection};
     AcrossThePulse across = across_the_pulse(
         paths, {.from = from, .to = to, .paths = arrivals, .frequency = centre, .limits = limits},
         received, scenario.propagation.band);
@@ -253,11 +258,11 @@ std::vector<std::string> wave_warnings(const PingGeometry& geometry, const Propa
         unsure_amplitudes(paths.along_transect(), from.z(), to.z(), centre, limits, arrivals);
     const Environment& ocean = paths.along_transect().environment();
     across.corners = turned_at_corners(ocean, arrivals, centre);
-    across.reflection = reflection_error(ocean, from.z(), centre, arrivals);
+    across.reflection = reflection;
     return across;
   };
   std::vector<std::string> found;
-  if (!paths.layered() || !scenario.propagation.diffraction) return found;
+  if (paths.volume() != nullptr || !scenario.propagation.diffraction) return found;
   for (int t = 0; t < static_cast<int>(scenario.targets.size()); ++t) {
     const Vec3 place = geometry.target_at(t, 0.0).position;
     const std::string name =
@@ -271,7 +276,7 @@ std::vector<std::string> wave_warnings(const PingGeometry& geometry, const Propa
   }
   if (scenario.propagation.direct_blast && !geometry.is_own(array))
     add_warnings({line_of(judged(source, receiver), "an array")}, found);
-  if (scenario.reverberation.enabled)
+  if (scenario.reverberation.enabled && paths.layered())
     add_warnings({dark_ground(scenario, paths, source, received.centre_frequency())}, found);
   return found;
 }

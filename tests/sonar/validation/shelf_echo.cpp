@@ -190,8 +190,8 @@ TEST(ShelfEcho, AcrossASmoothLayerIsTheWavesByDefault) {
 TEST(ShelfEcho, OffSandIsTheWavesByDefault) { expect_truth(pekeris(), BandOfLosses::automatic); }
 TEST(ShelfEcho, OffMudIsTheWavesByDefault) { expect_truth(mud(), BandOfLosses::automatic); }
 // A gradient in which flat rays turn leaves the floor's reflection at the angles of rays: the echo
-// correlates 0.73 with an integral over wavenumbers.
-TEST(ShelfEcho, OffMudUnderAGradientIsWarnedOf) {
+// correlates 0.73 with an integral over wavenumbers. So does a floor that varies by centimetres.
+TEST(ShelfEcho, OffMudWhereItIsThatOfPlaneWavesIsWarnedOf) {
   using testing::Contains, testing::HasSubstr, testing::Not;
   Shelf shelf = mud();
   const std::array phones = {0};
@@ -203,6 +203,10 @@ TEST(ShelfEcho, OffMudUnderAGradientIsWarnedOf) {
   EXPECT_THAT(warnings(), Not(Contains(HasSubstr("plane waves"))));
   const std::vector<double> depth = {0.0, 80.0}, speed = {1500.0, 1501.6};
   shelf.sea.water = SoundSpeedProfile::table(depth, speed, Interpolation::c_linear);
+  EXPECT_THAT(warnings(), Contains(HasSubstr("plane waves")));
+  shelf = mud();
+  const std::vector<double> range = {0.0, 3000.0, 12000.0}, floor = {80.0, 80.05, 80.0};
+  shelf.sea.bottom.shape = BoundaryShape(range, floor, ShapeInterpolation::piecewise_linear);
   EXPECT_THAT(warnings(), Contains(HasSubstr("plane waves")));
 }
 
