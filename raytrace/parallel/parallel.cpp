@@ -47,8 +47,14 @@ void StopPoint::operator()() const {
 void until_stopped(const std::stop_token& stop, const std::function<void()>& work) {
   tbb::task_group group;
   const std::stop_callback call_off(stop, [&group] { group.cancel(); });
+  // A group forgets a cancellation that came before its first task, when it takes its parent's
+  // state.
+  const auto unless_stopped = [&] {
+    if (stop.stop_requested()) throw Interrupted();
+    work();
+  };
   // What the work throws when it is called off goes no further than the group.
-  if (group.run_and_wait(work) == tbb::canceled) throw Interrupted();
+  if (group.run_and_wait(unless_stopped) == tbb::canceled) throw Interrupted();
 }
 
 }  // namespace asdic::detail

@@ -8,6 +8,8 @@
 
 #include "core/error.h"
 #include "raytrace/parallel/parallel.h"
+#include "raytrace/parallel/progress.h"
+#include "raytrace/parallel/stop.h"
 #include "study/runs/run.h"
 
 namespace asdic::detail::study {
@@ -122,6 +124,25 @@ TEST(Run, AStopEndsALongRealisationAtOnce) {
   EXPECT_LT(std::chrono::steady_clock::now() - begin, 60s);  // a busy machine's moment
   EXPECT_EQ(rows, std::vector<std::uint64_t>{0});
   EXPECT_FALSE(went_on);
+}
+
+// A stop that comes before a realisation's loops begin is not forgotten, within a parallel loop
+// either.
+TEST(Run, AStopBeforeARealisationEndsIt) {
+  std::stop_source stop;
+  stop.request_stop();
+  std::atomic<int> made = 0, stopped = 0;
+  const auto realise = [&](std::size_t) {
+    try {
+      until_stopped(stop.get_token(), [&] { in_parallel(10, [&](std::size_t) { ++made; }); });
+    } catch (const Interrupted&) {
+      ++stopped;
+    }
+  };
+  realise(0);
+  in_parallel(4, realise);
+  EXPECT_EQ(made, 0);
+  EXPECT_EQ(stopped, 5);
 }
 
 // Outside of a run nothing is called off.
