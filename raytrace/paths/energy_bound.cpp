@@ -15,6 +15,17 @@ constexpr double margin = 64.0;
 
 double intensity(const Arrival& path) { return std::norm(path.amplitude) + path.scattered; }
 
+double intensity(const Arrivals& paths) {
+  double sum = 0.0;
+  for (const Arrival& path : paths) sum += intensity(path);
+  return sum;
+}
+
+double squared_distance(const LegEnds& ends) {
+  const double deeper = ends.receiver_depth - ends.source_depth;
+  return ends.range * ends.range + deeper * deeper;
+}
+
 /// sin² of the angle, at the slowest depth, of the steepest wave that the water turns.
 double steepest_sine2(const Environment& ocean) noexcept {
   double slow = std::numeric_limits<double>::infinity(), fast = 0.0;
@@ -31,23 +42,25 @@ double steepest_sine2(const Environment& ocean) noexcept {
   return (1.0 - slow / fast) * (1.0 + slow / fast);
 }
 
-[[noreturn]] void tell(const Arrivals& paths, const LegEnds& ends, double distance, double sum,
-                       double most) {
+[[noreturn]] void tell(const Arrivals& paths, const Environment& ocean, const LegEnds& ends) {
   const auto loudest =
       std::max_element(paths.begin(), paths.end(), [](const Arrival& a, const Arrival& b) {
         return intensity(a) < intensity(b) ||
                (!std::isnan(intensity(a)) && std::isnan(intensity(b)));
       });
-  const double spherical = 1.0 / (distance * distance);
-  char text[512];
+  const double d2 = squared_distance(ends), sum = intensity(paths);
+  char text[640];
   std::snprintf(
       text, sizeof text,
-      "a path louder than energy allows, which is a fault of this program: %.6g Hz, %.6g m at "
+      "a path louder than energy allows, %s: %.6g Hz, %.6g m at "
       "depths of %.6g and %.6g m, all %zu paths together %.1f dB over spherical spreading, at most "
       "%.1f dB are possible; the loudest, launched at %.4g deg with %d surface and %d bottom "
       "bounces after %.6g s, has %.1f dB, and %.1f dB scattered, re 1 m",
+      ends.rays_alone ? "because a ray alone has no bound at a caustic; with "
+                        "propagation.diffraction = true waves replace it there"
+                      : "which is a fault of this program",
       ends.frequency, ends.range, ends.source_depth, ends.receiver_depth, paths.size(),
-      db_from_power(sum / spherical), db_from_power(most / spherical),
+      db_from_power(sum * d2), db_from_power(most_intensity(ocean, ends) * d2),
       degrees(loudest->launch_elevation), loudest->surface_bounces, loudest->bottom_bounces,
       loudest->delay, db_from_power(std::norm(loudest->amplitude)),
       db_from_power(loudest->scattered));
@@ -67,16 +80,15 @@ double most_intensity(const Environment& ocean, const LegEnds& ends) noexcept {
   return margin / (d * d) * (ends.in_volume ? gain * gain : gain);
 }
 
-void ensure_bounded(const Arrivals& paths, const Environment& ocean, const LegEnds& ends) {
-  if (paths.empty()) return;
-  const double d = std::hypot(ends.range, ends.receiver_depth - ends.source_depth);
-  if (!(d > 0.0)) return;
-  double sum = 0.0;
-  for (const Arrival& path : paths) sum += intensity(path);
+double excess(const Arrivals& paths, const Environment& ocean, const LegEnds& ends) {
+  const double sum = intensity(paths), d2 = squared_distance(ends);
   // Few legs are so much louder than spherical spreading that the bound itself is needed.
-  if (sum * d * d <= margin) return;
-  const double most = most_intensity(ocean, ends);
-  if (!(sum <= most)) tell(paths, ends, d, sum, most);
+  if (!(d2 > 0.0) || sum * d2 <= margin) return 0.0;
+  return sum / most_intensity(ocean, ends);
+}
+
+void ensure_bounded(const Arrivals& paths, const Environment& ocean, const LegEnds& ends) {
+  if (!(excess(paths, ocean, ends) <= 1.0)) tell(paths, ocean, ends);
 }
 
 }  // namespace asdic::detail

@@ -10,6 +10,7 @@ struct LegEnds {
   double frequency;                            ///< [Hz]
   bool layered = true;                         ///< is_layered()
   bool in_volume = false;                      ///< rays may be focused across vertical planes, too
+  bool rays_alone = false;                     ///< no waves replace rays at caustics
 };
 
 /// Upper bound of the intensity Σ(|A|² + scattered) of all paths of one leg, relative to 1 m from
@@ -23,8 +24,13 @@ struct LegEnds {
 /// Source: docs/theory/energy-bound.md, eq. (2)
 [[nodiscard]] double most_intensity(const Environment& ocean, const LegEnds& ends) noexcept;
 
+/// Returns the intensity of all paths of a leg divided by most_intensity(), which is above 1 where
+/// it is more than energy allows; or 0 without the bound, where that cannot be.
+[[nodiscard]] double excess(const Arrivals& paths, const Environment& ocean, const LegEnds& ends);
+
 /// Checks that the paths of a leg are together no louder than most_intensity().
-/// \throws RunError  naming the loudest path, the leg, the level and the bound
+/// \throws RunError  naming the loudest path, the leg, the level and the bound, and for rays alone
+/// the setting that replaces them
 void ensure_bounded(const Arrivals& paths, const Environment& ocean, const LegEnds& ends);
 
 }  // namespace asdic::detail

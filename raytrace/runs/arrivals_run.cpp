@@ -12,6 +12,7 @@
 #include "raytrace/ocean/level_rays.h"
 #include "raytrace/parallel/parallel.h"
 #include "raytrace/paths/drawn_path.h"
+#include "raytrace/paths/energy_bound.h"
 #include "raytrace/runs/checks.h"
 #include "raytrace/runs/rays_run.h"
 #include "raytrace/runs/single_beam.h"
@@ -101,6 +102,7 @@ class ArrivalSearch {
                         " parts of the fan; faint paths are missing there");
     }
     tell_of_bounces(source_depth, found, notes);
+    tell_of_caustics(source_depth, found, notes);
     for (std::size_t i = 0; i < found.size(); ++i) finish(found[i], receivers_[i].range);
     tell_of(source_depth, notes);
     return found;
@@ -119,6 +121,31 @@ class ArrivalSearch {
                   "of more than %d bounces off a boundary are left out, at most %.2g dB of the "
                   "incoherent level",
                   depth, most_bounces, db_from_power(1.0 + most));
+    notes.emplace_back(text);
+  }
+
+  /// Where rays are louder than energy allows.
+  void tell_of_caustics(double depth, const std::vector<Arrivals>& found,
+                        std::vector<std::string>& notes) const {
+    std::size_t loud = 0;
+    double most = 1.0;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const double over = excess(found[i], case_.environment,
+                                 {.source_depth = depth,
+                                  .receiver_depth = receivers_[i].depth,
+                                  .range = receivers_[i].range,
+                                  .frequency = case_.frequency,
+                                  .layered = solver_.has_value()});
+      if (over <= 1.0) continue;
+      ++loud;
+      most = std::max(most, over);
+    }
+    if (loud == 0) return;
+    char text[240];
+    std::snprintf(text, sizeof text,
+                  "source at %g m: at %zu of %zu receivers rays are up to %.1f dB louder than "
+                  "energy allows, because a ray alone has no bound at a caustic",
+                  depth, loud, found.size(), db_from_power(most));
     notes.emplace_back(text);
   }
 

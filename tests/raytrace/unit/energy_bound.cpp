@@ -4,10 +4,14 @@
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include "core/error.h"
 #include "core/units.h"
+#include "raytrace/paths/eigenrays.h"
 #include "raytrace/paths/energy_bound.h"
+#include "raytrace/runs/arrivals_run.h"
 #include "support/depth_modes.h"
 
 namespace asdic::detail {
@@ -41,6 +45,51 @@ TEST(EnergyBound, RefusesWhatIsLouder) {
     for (const char* part : {"3500 Hz", "12945.7 m", "100.0 dB over", "at most 52.6 dB", "17.7 dB"})
       EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
   }
+}
+
+// A ray at the caustic that begins a convergence zone, found by bisection to the last digit, has no
+// bound. A run of rays says so; a leg is refused where waves were turned off, with the way out.
+TEST(EnergyBound, NamesRaysAtACaustic) {
+  Environment ocean{.water = SoundSpeedProfile::munk()};
+  ocean.bottom = {.depth = 5000.0, .material = FluidHalfSpace{}};
+  const double depth = 100.0, frequency = 100.0;
+  const PathLimits waterborne{
+      .max_surface_bounces = 0, .max_bottom_bounces = 0, .diffraction = false};
+  const EigenraySolver solver(ocean);
+  const auto rays = [&](double range) {
+    return solver.find(depth, depth, range, frequency, waterborne);
+  };
+  double dark = 40e3, lit = 66e3;
+  ASSERT_TRUE(rays(dark).empty());
+  ASSERT_FALSE(rays(lit).empty());
+  for (int n = 0; n < 60; ++n) (rays(0.5 * (dark + lit)).empty() ? dark : lit) = 0.5 * (dark + lit);
+
+  LegEnds there{.source_depth = depth,
+                .receiver_depth = depth,
+                .range = lit,
+                .frequency = frequency,
+                .rays_alone = true};
+  EXPECT_GT(excess(rays(lit), ocean, there), 1.0);
+  EXPECT_LT(excess(rays(lit + 500.0), ocean, there), 1e-2);
+  try {
+    ensure_bounded(rays(lit), ocean, there);
+    FAIL();
+  } catch (const RunError& error) {
+    EXPECT_NE(std::string(error.what()).find("propagation.diffraction = true"), std::string::npos)
+        << error.what();
+  }
+
+  PropagationCase c{.environment = ocean};
+  c.task = Task::arrivals;
+  c.frequency = frequency;
+  c.source_depths = {depth};
+  c.receivers = {.depths = {depth}, .ranges = {lit, lit + 500.0}};
+  c.box_range = 70e3;
+  c.box_depth = 5000.0;
+  const PropagationResult result = run_arrivals(c);
+  std::string all;
+  for (const std::string& note : result.notes) all += note + '\n';
+  EXPECT_NE(all.find("at 1 of 2 receivers rays are up to"), std::string::npos) << all;
 }
 
 // The bound is finite, and some tens of decibels over spherical spreading.
