@@ -34,7 +34,8 @@ CycleWaves::CycleWaves(const Environment& ocean, double frequency, double source
                        double receiver_depth, double furthest)
     : source_is_upper_(source_depth <= receiver_depth) {
   const WaveColumn column(ocean, frequency, source_depth, std::span(&receiver_depth, 1));
-  window_ = water_window(ocean, column, frequency, furthest);
+  const double angle = angle_of_the_returned(column, angle_of_spreading(ocean, frequency));
+  window_ = water_window(column, angle, furthest);
   slowest_ = column.at_slowest();
   flattest_ = std::sqrt(slowest_.k2).real();
   fade_ = fade_radians / furthest;

@@ -143,7 +143,8 @@ bool diffraction_is_affordable(const Environment& ocean, double range, double fr
                             ExactKey(Kept::water_column, kept->ocean, frequency, frequency), make);
   const WaveColumn& column = water->column();
   const double steps =
-      double(column.layers()) * double(water_window(ocean, column, frequency, range).count);
+      double(column.layers()) *
+      double(water_window(column, angle_of_spreading(ocean, frequency), range).count);
   return 2.0 * steps <= most_diffraction_steps;
 }
 

@@ -9,6 +9,9 @@ namespace asdic::detail {
 namespace {
 
 constexpr double least_angle = radians(4.0), airy_spreads = 6.0;
+constexpr double steepest_angle = radians(50.0);
+constexpr double angle_step = 1.19;      // a quarter of an octave
+constexpr double least_returned = 1e-3;  // of a wave's pressure, by the water itself
 // What the edges of the window hold at the furthest range, at least: 80 dB off what lies outside,
 // where g falls off as slowly as between depths less than a wavelength apart.
 constexpr double edge_radians = 200.0;
@@ -38,11 +41,23 @@ std::complex<double> WaterWindow::factor(std::complex<double> xi, double range) 
          std::exp(std::complex<double>(0.0, -1.0) * (xi * range - 0.25 * pi));
 }
 
-WaterWindow water_window(const Environment& ocean, const WaveColumn& column, double frequency,
-                         double range) {
-  const double slow = column.largest_wavenumber(), fast = column.smallest_wavenumber();
+double angle_of_spreading(const Environment& ocean, double frequency) {
   const double spread = std::cbrt(2.0 * steepest_gradient(ocean) / (2.0 * pi * frequency));
-  const double angle = std::clamp(airy_spreads * spread, least_angle, radians(50.0));
+  return std::clamp(airy_spreads * spread, least_angle, steepest_angle);
+}
+
+double angle_of_the_returned(const WaveColumn& column, double most) {
+  double angle = most;
+  for (double next = angle / angle_step; next > least_angle / angle_step; next /= angle_step) {
+    const double xi = column.smallest_wavenumber() * std::cos(std::max(next, least_angle));
+    if (column.returned_by_the_water(xi) > least_returned) break;
+    angle = std::max(next, least_angle);
+  }
+  return angle;
+}
+
+WaterWindow water_window(const WaveColumn& column, double angle, double range) {
+  const double slow = column.largest_wavenumber(), fast = column.smallest_wavenumber();
   const double flat = fast * std::cos(angle), steep = fast * std::cos(1.5 * angle);
   WaterWindow w;
   w.spacing = 2.0 * pi / (ranges_of_a_period * range);

@@ -6,9 +6,8 @@
 
 namespace asdic::detail {
 
-/// The wavenumbers that stay in the water at one range, evenly spaced above the real axis: those
-/// whose angle at the fastest depth is below four degrees, or what Airy's function spreads,
-/// (2c′/ω)^{1/3}, by far. Steeper ones fade out over half of that angle more.
+/// The wavenumbers that stay in the water at one range, evenly spaced above the real axis: those up
+/// to an angle at the fastest depth. Steeper ones fade out over half of that angle more.
 struct WaterWindow {
   double spacing = 0.0, offset = 0.0;        ///< [1/m]
   double begin = 0.0, end = 0.0;             ///< real parts [1/m]
@@ -24,8 +23,17 @@ struct WaterWindow {
   [[nodiscard]] std::complex<double> factor(std::complex<double> xi, double range) const noexcept;
 };
 
-/// \param range  the furthest [m]
-[[nodiscard]] WaterWindow water_window(const Environment& ocean, const WaveColumn& column,
-                                       double frequency, double range);
+/// Angle at the fastest depth beyond which waves beside rays need not be looked for, neither where
+/// rays turn nor in their shadows: six times (2c′/ω)^{1/3}, what Airy's function spreads for the
+/// steepest gradient, at least 4° [rad]
+[[nodiscard]] double angle_of_spreading(const Environment& ocean, double frequency);
+
+/// Angle at the fastest depth beyond which the water itself returns less than 1e-3 of a wave: it
+/// turns none, and what its corners and bends reflect has died out. There waves are rays.
+/// \param most  angle_of_spreading() [rad]   \return 4° … most [rad]
+[[nodiscard]] double angle_of_the_returned(const WaveColumn& column, double most);
+
+/// \param angle  the steepest at the fastest depth [rad]   \param range  the furthest [m]
+[[nodiscard]] WaterWindow water_window(const WaveColumn& column, double angle, double range);
 
 }  // namespace asdic::detail

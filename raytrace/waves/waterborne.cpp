@@ -33,7 +33,7 @@ std::shared_ptr<EdgePair> edge_pair(const Environment& ocean, const WaveColumn& 
                                     double frequency, double furthest, std::size_t upper,
                                     std::size_t lower) {
   auto pair = std::make_shared<EdgePair>();
-  pair->window = water_window(ocean, column, frequency, furthest);
+  pair->window = water_window(column, angle_of_spreading(ocean, frequency), furthest);
   pair->waves.resize(pair->window.count);
   constexpr std::size_t piece = 16;
   in_parallel_chunks(pair->window.count, piece, [&](std::size_t begin, std::size_t end) {

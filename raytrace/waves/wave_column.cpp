@@ -234,6 +234,20 @@ WaveColumn::AtDepths WaveColumn::solutions(Complex xi) const noexcept {
   return at;
 }
 
+double WaveColumn::returned_by_the_water(double xi) const noexcept {
+  const auto waves_at = [&](Complex k2, const WaveLayer& layer) {
+    return travelling_waves(k2 - xi * xi, ((layer.k2[1] - layer.k2[0]) / layer.thickness).real());
+  };
+  const TravellingWaves top = waves_at(layers_.front().k2[0], layers_.front());
+  DepthWave wave{.u = top.up, .du = top.up_slope};
+  for (const WaveLayer& l : layers_)
+    follow(wave, l.k2[0] - xi * xi, l.k2[1] - xi * xi, l.thickness);
+  const TravellingWaves out = waves_at(layers_.back().k2[1], layers_.back());
+  // u = a·(up + R·down)
+  return std::abs(wronskian(out.up, out.up_slope, wave.u, wave.du) /
+                  wronskian(wave.u, wave.du, out.down, out.down_slope));
+}
+
 /// Whether a wave dies out in a layer. \param decay  is added to, a bound from below [Np]
 bool WaveColumn::fades(std::size_t layer, double xi, double& decay) const noexcept {
   const WaveLayer& l = layers_[layer];

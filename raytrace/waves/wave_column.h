@@ -45,6 +45,10 @@ class WaveColumn {
   };
   [[nodiscard]] AtDepths solutions(std::complex<double> xi) const noexcept;
 
+  /// Reflection coefficient of the water between surface and bottom for a wave from below, when
+  /// neither returns anything: 1 where the wave turns, and that of corners and bends elsewhere.
+  [[nodiscard]] double returned_by_the_water(double xi) const noexcept;
+
   /// What the surface lets be at an edge, its derivative downwards; and the bottom, upwards. Beyond
   /// where a wave has died out (350 dB) nothing is looked at.
   [[nodiscard]] DepthWave above(std::complex<double> xi, std::size_t edge) const noexcept;

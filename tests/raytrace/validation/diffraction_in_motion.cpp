@@ -28,7 +28,7 @@ struct Moment {
 Complex integral(const Environment& water, double frequency, double source, double receiver,
                  double range, double furthest) {
   const WaveColumn column(water, frequency, source, std::span(&receiver, 1));
-  const WaterWindow window = water_window(water, column, frequency, furthest);
+  const WaterWindow window = water_window(column, angle_of_spreading(water, frequency), furthest);
   std::array<double, 1> growth{};
   std::array<Complex, 1> g;
   Complex sum = 0.0;
