@@ -20,7 +20,7 @@ def _real(signal) -> np.ndarray:
                              "a carrier f that is (b * np.exp(2j*np.pi*f*t)).real")
     if values.ndim != 1:
         raise described.made("signal", f"an array of shape {values.shape}", "one of shape (n,)")
-    values = values.astype(float)
+    values = described.numbers("signal", signal, "Pa")
     if not np.isfinite(values).all():
         raise described.made("signal", f"{values[~np.isfinite(values)][0]} at sample "
                              f"{int(np.argmin(np.isfinite(values)))}", "finite numbers [Pa]")

@@ -81,10 +81,7 @@ class _Table:
         if value is None:
             self._core.erase(path)
             return
-        value = oceans.setting(place, value)
-        described.check(path, described.settings().get(place, []), value)
-        described.check_within(path, place, value)
-        self._core.set(path, value)
+        self._core.set(path, oceans.setting(path, place, value))
 
     def __delattr__(self, name: str) -> None:
         self._core.erase(self._of(name)[0])
@@ -166,10 +163,11 @@ class _List(Sequence):
 
     def append(self, table: Mapping | None = None, **settings) -> None:
         """One more, of a dictionary or of keywords."""
+        made = described.taken(f"{self._path}.{len(self)}", self._place, {**(table or {}), **settings})
         there = self._there()
         if isinstance(there, dict):
             self._core.set(self._path, [there])
-        self._core.add(self._path, {**(table or {}), **settings})
+        self._core.add(self._path, made)
 
     def clear(self) -> None:
         self._core.erase(self._path)
@@ -221,6 +219,7 @@ class Scenario(_Table):
         or over range and depth; a dictionary of the file's own keys.
     bathymetry : optional
         A depth [m]; pairs (range, depth), [n, 2]; a Series, DataFrame or DataArray over range.
+        Where these give units (``attrs["units"]``), they are converted.
     bottom : mapping, optional
         What lies below, ``{"kind": "rigid"}``. A bathymetry without it lies on medium sand:
         ``{"kind": "grain-size", "grain_size": 1.5}``.
@@ -238,11 +237,13 @@ class Scenario(_Table):
 
     def __init__(self, file=None, *, set: Mapping | None = None, sound_speed=None, bathymetry=None,
                  bottom: Mapping | None = None, **sections):
+        changes = {key: described.taken(key, described.place_of(key), value)
+                   for key, value in (set or {}).items()}
         if file is None:
             core = _core.Scenario()
         else:
             core = _core.Scenario.read(os.fspath(file),
-                                       [f"{key}={_text(value)}" for key, value in (set or {}).items()])
+                                       [f"{key}={_text(value)}" for key, value in changes.items()])
         super().__init__(core, "", "")
         if sound_speed is not None:
             core.set("environment.sound_speed", oceans.sound_speed(sound_speed))
@@ -250,26 +251,26 @@ class Scenario(_Table):
             for key, value in oceans.bathymetry(bathymetry).items():
                 core.set(f"environment.bottom.{key}", value)
         for key, value in (bottom or {}).items():
-            core.set(f"environment.bottom.{key}", value)
+            place = f"environment.bottom.{key}"
+            core.set(place, oceans.setting(place, place, value))
         if bathymetry is not None and not core.has("environment.bottom.kind"):
             for key, value in oceans.SAND.items():
                 core.set(f"environment.bottom.{key}", value)
         self._take(sections)
         if file is None:
-            for key, value in (set or {}).items():
+            for key, value in changes.items():
                 core.set(key, value)
 
     def _take(self, sections: Mapping) -> None:
         """Sections by their names; a table is put into one that is there."""
         for name, value in sections.items():
             path, place = self._of(name)
-            described.check(path, described.settings().get(place, []), value)
-            described.check_within(path, place, value)
+            value = oceans.setting(path, place, value)
             if isinstance(value, Mapping) and isinstance(self._get(path), dict):
                 for key, inner in value.items():
-                    self._core.set(f"{path}.{key}", oceans.setting(f"{place}.{key}", inner))
+                    self._core.set(f"{path}.{key}", inner)
             else:
-                self._core.set(path, oceans.setting(place, value))
+                self._core.set(path, value)
 
     @classmethod
     def parse(cls, text: str, name="scenario.toml") -> Scenario:
@@ -308,7 +309,7 @@ class Scenario(_Table):
         if value is None:
             self._core.erase(path)
         else:
-            self._core.set(path, value)
+            self._core.set(path, oceans.setting(path, described.place_of(path), value))
         return self
 
     def get(self, path: str):
@@ -441,7 +442,8 @@ class Scenario(_Table):
         if not core.has("platform") and not core.has("run"):
             core = self._with_run(frequency=1000.0, source_depth=source_depth, depths=[0.0],
                                   ranges=[range])._core
-        found = _core.rays(core, lowest_deg, highest_deg, count, list(elevations_deg), range,
+        elevations = described.numbers("elevations_deg", elevations_deg, "degrees").tolist()
+        found = _core.rays(core, lowest_deg, highest_deg, count, elevations, range,
                            source_depth, bounces)
         told = core.warnings()
         tell(told)
@@ -458,7 +460,8 @@ class Scenario(_Table):
         if not core.has("platform") and not core.has("run"):
             core = self._with_run(frequency=1000.0, source_depth=0.0, depths=[0.0],
                                   ranges=[1.0])._core
-        z = np.atleast_1d(np.asarray(depths, float))
+        z = np.atleast_1d(described.numbers("depths", depths, "m"))
+        range = described.number("range", range, "m")
         return datasets.profile(z, _core.sound_speed(core, z.tolist(), range))
 
     def waveform(self, sample_rate: float | None = None, transmitter: int | str = 0) -> xr.DataArray:
@@ -471,6 +474,7 @@ class Scenario(_Table):
         its window. Pressure at 1 m is ``np.sqrt(2) * 1e-6 * 10**(SL / 20) * w.real`` [Pa] with
         ``w.attrs["source_level_db"]``; ``energy_s`` is the integral of its square.
         """
+        sample_rate = described.number("sample_rate", sample_rate, "Hz", True)
         return datasets.waveform(_core.waveform(self._core, self._number("transmitter", transmitter),
                                                 sample_rate))
 
@@ -510,10 +514,11 @@ class Scenario(_Table):
         if frequency is None and not made._core.has("run.frequency") \
                 and not made._core.has("platform"):
             raise described.made("frequency", "nothing", "one [Hz]")
-        for key, value in (("run.frequency", frequency), ("run.source.depth", source_depth),
-                           ("run.receivers.depth", depths), ("run.receivers.range", ranges)):
+        for key, value, unit in (("run.frequency", frequency, "Hz"), ("run.source.depth", source_depth, "m"),
+                                 ("run.receivers.depth", depths, "m"),
+                                 ("run.receivers.range", ranges, "m")):
             if value is not None:
-                made._core.set(key, np.asarray(value, float).tolist())
+                made._core.set(key, described.numbers(key, value, unit).tolist())
         if not made._core.has("run.source.depth") and made._core.has("platform"):
             made._core.set("run.source.depth", float(self.platforms[0].position[2]))
         if not made._core.has("run.frequency"):
@@ -598,6 +603,8 @@ class Scenario(_Table):
 
 def _text(value) -> str:
     """A value as --set takes it."""
+    if described.unit_of(value):
+        raise described.made("set", f'a value with units of "{described.unit_of(value)}"', "one in the setting's unit")
     return value if isinstance(value, str) else _core.toml(value)
 
 
