@@ -19,8 +19,9 @@ OPTIONS: dict[str, Any] = {
     "across_beams": bool, "guard_cells": "", "reference_cells": "", "false_alarm_probability": "",
     "sub_bands": "", "cancel_direct_blast": bool, "start": "s", "stop": "s", "target_depth": "m", "range_speed": "m/s"}
 
-UNITS = {"time": "s", "bearing_deg": "degrees", "elevation_deg": "degrees", "snr_db": "dB",
-         "excess_db": "dB", "level_db": "dB re 1 µPa", "east": "m", "north": "m", "depth": "m",
+UNITS = {"time": "s", "look_bearing_deg": "degrees", "look_elevation_deg": "degrees",
+         "bearing_deg": "degrees", "snr_db": "dB", "excess_db": "dB", "level_db": "dB re 1 µPa",
+         "east": "m", "north": "m", "depth": "m",
          "range": "m", "range_rate": "m/s", "latitude": "degrees", "longitude": "degrees",
          "velocity_east": "m/s", "velocity_north": "m/s", "position_sigma": "m"}
 EARTH = ("latitude", "longitude")
@@ -33,7 +34,7 @@ class Processed:
     Attributes
     ----------
     detections : pandas.DataFrame
-        ping, array, time [s], doppler_factor, bearing_deg, elevation_deg, snr_db, excess_db,
+        ping, array, time [s], doppler_factor, look_bearing_deg, look_elevation_deg, snr_db, excess_db,
         level_db, target (-1 a false alarm, -2 the direct sound, -3 another ping).
     places : pandas.DataFrame
         Where a detection may be: detection, east, north, depth [m] when it was struck, range [m],

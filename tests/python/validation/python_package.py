@@ -455,7 +455,7 @@ class Pings(unittest.TestCase):
         truth = s.ping()
         for name in ("delay", "level_db", "doppler_factor", "arrival_bearing_deg"):
             np.testing.assert_allclose(truth[f"echoes/{name}"], file[f"echoes/{name}"], rtol=1e-12)
-        bearing = a.detections.bearing_deg
+        bearing = a.detections.look_bearing_deg
         self.assertTrue(((bearing >= 0.0) & (bearing < 360.0) | bearing.isna()).all())
         maps = "processed/maps/array_0"
         self.assertEqual(file.asdic.group(maps).sizes["time"], file.sizes[maps + "/time"])
