@@ -42,9 +42,10 @@ class Channel:
     Called with a signal it says what the phones receive: :meth:`__call__`.
     """
 
-    def __init__(self, scenario, core):
-        self._scenario, self._core = scenario, core
-        shown = core.shown
+    def __init__(self, scenario, asked: tuple):
+        self._scenario, self._asked = scenario.copy(), asked
+        self._core = _core.channel(self._scenario._core, *asked)
+        shown = self._core.shown
         self.warnings = shown["warnings"]
         self.frequency = shown["frequency"]  #: of the amplitudes [Hz]
         xr = datasets.xarray()
@@ -102,6 +103,9 @@ class Channel:
             pressure, dims=("phone", "time"), name="pressure",
             coords={"time": ("time", time, {"units": "s"})},
             attrs={"units": "Pa", "sample_rate_hz": float(sample_rate)})
+
+    def __reduce__(self):
+        return Channel, (self._scenario, self._asked)
 
     def __repr__(self) -> str:
         sizes = self.paths.sizes

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import _core, described
+from . import _core, datasets, described
 from .told import tell
 
 if TYPE_CHECKING:
@@ -64,7 +64,8 @@ def process(source, progress=None, **options) -> Processed:
     Parameters
     ----------
     source : xarray.Dataset, sequence of them, or path
-        What :meth:`Scenario.ping` gave, several pings of one scenario in order, or a ping file.
+        What :meth:`Scenario.ping` gave, several pings of one scenario in order, or a ping file. A ping
+        that came through a pickle or a netCDF file is simulated again.
     **options
         mvdr, hann_shading, max_speed [m/s], split_window, across_beams, guard_cells,
         reference_cells, false_alarm_probability, sub_bands, cancel_direct_blast, start, stop [s],
@@ -111,11 +112,11 @@ def process(source, progress=None, **options) -> Processed:
 
 
 def _handle(dataset):
-    handle = getattr(dataset, "encoding", {}).get("asdic")
-    own = handle is not None and "pressure" in dataset \
-        and np.may_share_memory(dataset["pressure"].values, handle.pressure) \
-        and dataset["pressure"].shape == handle.pressure.shape
-    if not own:
-        raise described.made("source", "a dataset that was changed, or came from elsewhere",
-                             "one as Scenario.ping() gave it, or the path of a ping file")
-    return handle
+    handle = datasets.ping_of(dataset)
+    if handle is not None:
+        values = datasets.as_complex(dataset["pressure"]).values
+        if np.may_share_memory(values, handle.pressure) and values.shape == handle.pressure.shape \
+                or np.array_equal(values, handle.pressure):
+            return handle
+    raise described.made("source", "a dataset that was changed, or came from elsewhere",
+                         "one as Scenario.ping() gave it, or the path of a ping file")

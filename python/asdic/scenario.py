@@ -302,7 +302,9 @@ class Scenario(_Table):
         return self.copy()
 
     def __reduce__(self):
-        return Scenario.parse, (self.to_toml(),)
+        own: tuple[str, ...] = type(self).__slots__
+        return _restored, (type(self), self.to_toml(), os.path.abspath(self._core.path()),
+                           {name: getattr(self, name) for name in own})
 
     def set(self, path: str, value) -> Scenario:
         """Sets what stands at a path, ``"target.0.depth"``. → self"""
@@ -541,7 +543,7 @@ class Scenario(_Table):
         Returns an xarray.Dataset with the names, dimensions and units of the ping file
         (docs/formats/ping.md): ``pressure`` (channel, sample) [Pa], float32, or complex64 where the
         scenario asks for complex baseband, not copied and not to be written to; ``time`` [s];
-        ``phone_position`` [m]; the truth as ``echoes/delay`` and so on.
+        ``phone_position`` [m]; the truth as ``echoes.delay`` and so on.
 
         What to know before trusting a number is warned of (AsdicWarning), and in
         ``attrs["warnings"]``.
@@ -586,8 +588,7 @@ class Scenario(_Table):
         duration = described.number("duration", duration, "s", True)
         step = described.number("step", step, "s")
         frequency = described.number("frequency", frequency, "Hz", True)
-        found = Channel(self, _core.channel(self._core, first, receiver, duration, step, frequency,
-                                            held))
+        found = Channel(self, (first, receiver, duration, step, frequency, held))
         tell(self.warnings)
         tell(found.warnings)
         return found
@@ -599,6 +600,14 @@ class Scenario(_Table):
         if asked in names:
             return names.index(asked)
         raise described.made(kind, f'"{asked}"', "one of " + ", ".join(f'"{n}"' for n in names))
+
+
+def _restored(kind, text: str, path: str, own: dict):
+    """A scenario out of a pickle. → `kind`"""
+    made = kind._of_core(_core.Scenario.parse(text, path))
+    for name, value in own.items():
+        object.__setattr__(made, name, value)
+    return made
 
 
 def _text(value) -> str:
