@@ -128,6 +128,15 @@ class Settings(unittest.TestCase):
             s.field(**told), s.field(frequency=200.0, source_depth=50.0, depths=[0.5, 60.0], ranges=[1e3, 2e3]))
         np.testing.assert_array_equal(s.sound_speed(array([0.0, 0.1], "km", k=([0, 1], None))).depth, [0.0, 100.0])
 
+    def test_laws_of_a_study(self):
+        s = asdic.Scenario(SCENARIOS / "isovelocity.toml")
+        vary = {"target.0.position.0": {"law": "uniform", "low": array(2.0, "km"), "high": array(3.0, "km")}}
+        found = asdic.study(s, realisations=4, vary=vary).table
+        self.assertTrue(found.iloc[:, 0].between(2e3, 3e3).all(), found)
+        with self.assertRaisesRegex(asdic.InputError, 'vary.*low: found units of "s"'):
+            vary["target.0.position.0"]["low"] = array(2.0, "s")
+            asdic.study(s, realisations=4, vary=vary)
+
     def test_signals(self):
         channel = asdic.Scenario(SCENARIOS / "modem.toml").channel(duration=0.5)
         sent = np.random.default_rng(1).standard_normal(200)
