@@ -132,6 +132,8 @@ Value Scenario::get(std::string_view path) const {
 
 std::string Scenario::to_toml() const { return document_text(*data_); }
 
+std::filesystem::path Scenario::path() const { return data_->path; }
+
 std::vector<std::string> Scenario::validate(const Watch& watch) const {
   return translated([&] {
     if (detail::has_sonar(data_->document))

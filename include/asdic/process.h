@@ -66,8 +66,8 @@ struct Detection {
   int array = 0;                ///< in the scenario, from 0
   double time = 0.0;            ///< of its leading edge, after the ping's start [s]
   double doppler = 1.0;         ///< received over transmitted frequency
-  double bearing = 0.0;         ///< looked at, true; NaN if the array tells none [rad]
-  double elevation = 0.0;       ///< looked at, positive up; NaN if the array tells none [rad]
+  double look_bearing = 0.0;    ///< true; NaN if the array tells none [rad]
+  double look_elevation = 0.0;  ///< positive up; NaN if the array tells none [rad]
   double snr_db = 0.0;          ///< peak over the background around it [dB]
   double excess_db = 0.0;       ///< peak over the threshold [dB]
   double level_db = 0.0;        ///< of an echo from there [dB re 1 µPa]

@@ -69,6 +69,9 @@ class ASDIC_API Scenario {
 
   /// As a scenario file. One that was read and not changed: that file's text, letter by letter.
   [[nodiscard]] std::string to_toml() const;
+  /// The file that it was read from, or the name that parse() was given: the folder of files that
+  /// it names.
+  [[nodiscard]] std::filesystem::path path() const;
 
   /// Checks everything, as `asdic validate` does. \return warnings: what to know before trusting a
   /// number   \throws InputError at the first fault, with file, line, key, found and expected

@@ -9,11 +9,14 @@ All numbers are SI. Names that end in ``_deg`` are in degrees, in ``_db`` in dec
 (east, north, depth), depth positive down; elevations are positive up; bearings are true.
 docs/guide/python.md
 """
+import sys as _sys
+
 from ._core import Arrivals, InputError, RunError, Stopped, build, version
 from . import bellhop
+from . import datasets as _datasets
 from .areas import area
 from .channel import Channel
-from .datasets import group
+from .datasets import as_complex, as_pairs, group
 from .files import open  # noqa: A004  asdic.open
 from .pages import page
 from .placements import place
@@ -24,6 +27,8 @@ from .studies import Measure, StudyResult, read_study, study, to_parquet
 from .told import AsdicWarning
 
 __version__ = version()
+if "xarray" in _sys.modules:    # else it is imported when it is first needed
+    _datasets.xarray()
 
 
 def __getattr__(name: str):
@@ -34,6 +39,6 @@ def __getattr__(name: str):
 
 
 __all__ = ["Arrivals", "AsdicWarning", "Channel", "InputError", "Measure", "Ocean", "Processed",
-           "RunError", "Scenario", "Stopped", "StudyResult", "area", "bellhop", "build", "group", "ocean",
-           "open", "page", "place", "process", "read_study", "settings", "study", "to_parquet",
-           "version"]
+           "RunError", "Scenario", "Stopped", "StudyResult", "area", "as_complex", "as_pairs",
+           "bellhop", "build", "group", "ocean", "page", "place", "process",
+           "read_study", "settings", "study", "to_parquet", "version"]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from . import _core, files
+from . import _core, described, files
 from .told import tell
 
 if TYPE_CHECKING:
@@ -62,7 +62,8 @@ def area(scenario: Scenario | str | os.PathLike, depth: float | Sequence[float] 
     from .scenario import Scenario
 
     made = scenario if isinstance(scenario, Scenario) else Scenario(scenario)
-    depths = [] if depth is None else [float(z) for z in np.ravel(depth)]
+    depths = [] if depth is None else np.ravel(described.numbers("depth", depth, "m")).tolist()
+    reach = described.number("reach", reach, "m", True)
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "area.h5")
         warnings = _core.write_area(path, made._core, depths, reach, bearings, ranges, strength_db,

@@ -20,7 +20,7 @@ def _real(signal) -> np.ndarray:
                              "a carrier f that is (b * np.exp(2j*np.pi*f*t)).real")
     if values.ndim != 1:
         raise described.made("signal", f"an array of shape {values.shape}", "one of shape (n,)")
-    values = values.astype(float)
+    values = described.numbers("signal", signal, "Pa")
     if not np.isfinite(values).all():
         raise described.made("signal", f"{values[~np.isfinite(values)][0]} at sample "
                              f"{int(np.argmin(np.isfinite(values)))}", "finite numbers [Pa]")
@@ -42,9 +42,10 @@ class Channel:
     Called with a signal it says what the phones receive: :meth:`__call__`.
     """
 
-    def __init__(self, scenario, core):
-        self._scenario, self._core = scenario, core
-        shown = core.shown
+    def __init__(self, scenario, asked: tuple):
+        self._scenario, self._asked = scenario.copy(), asked
+        self._core = _core.channel(self._scenario._core, *asked)
+        shown = self._core.shown
         self.warnings = shown["warnings"]
         self.frequency = shown["frequency"]  #: of the amplitudes [Hz]
         xr = datasets.xarray()
@@ -102,6 +103,9 @@ class Channel:
             pressure, dims=("phone", "time"), name="pressure",
             coords={"time": ("time", time, {"units": "s"})},
             attrs={"units": "Pa", "sample_rate_hz": float(sample_rate)})
+
+    def __reduce__(self):
+        return Channel, (self._scenario, self._asked)
 
     def __repr__(self) -> str:
         sizes = self.paths.sizes

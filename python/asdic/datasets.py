@@ -6,9 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from . import _core
+
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
+
+PAIRS = ("iq", "re_im")  # dimensions of a real and an imaginary part
 
 _xarray = None
 _lock = threading.Lock()
@@ -41,13 +45,7 @@ class Accessor:
     @property
     def pressure(self):
         """Pressure as complex64 where the file holds complex baseband as pairs; else as it is."""
-        pressure = self._dataset["pressure"]
-        if pressure.dims[-1] not in ("iq", "re_im"):
-            return pressure
-        values = np.ascontiguousarray(pressure.values, np.float32).view(np.complex64)[..., 0]
-        return xarray().DataArray(values, dims=pressure.dims[:-1], name="pressure",
-                                  attrs=pressure.attrs,
-                                  coords={n: c for n, c in pressure.coords.items() if n not in ("iq", "re_im")})
+        return as_complex(self._dataset["pressure"])
 
     def group(self, name: str) -> xr.Dataset:
         """The arrays of a group of the file under their own names: ``ds.asdic.group("echoes")``."""
@@ -65,8 +63,8 @@ class Accessor:
 
 
 def group(dataset, name: str) -> xr.Dataset:
-    """The arrays of a group of a file (``"echoes"``) under their own names. → xarray.Dataset"""
-    before = name.rstrip("/") + "/"
+    """The arrays of a group of a file (``"processed/detections"``) under their own names. → xarray.Dataset"""
+    before = flat(name.rstrip("/")) + "."
     found = {key[len(before):]: (tuple(str(dim).removeprefix(before) for dim in value.dims),
                                  value._data, value.attrs)
              for key, value in dataset.variables.items() if str(key).startswith(before)}
@@ -75,6 +73,49 @@ def group(dataset, name: str) -> xr.Dataset:
     attrs = {key[len(before):]: value for key, value in dataset.attrs.items()
              if str(key).startswith(before)}
     return xarray().Dataset(found, attrs=attrs)
+
+
+def flat(path: str) -> str:
+    """The name of a file's array in a dataset: "echoes.delay" of "echoes/delay". netCDF has no names with a slash."""
+    return path.replace("/", ".")
+
+
+def as_pairs(data):
+    """A Dataset or DataArray with its complex numbers as pairs, for netCDF, which has none.
+
+    The last dimension of pairs, ``iq`` of complex baseband and ``re_im`` of all else, has the real and the imaginary
+    part. :func:`as_complex` turns them back.
+    """
+    def paired(variable):
+        if not np.issubdtype(variable.dtype, np.complexfloating):
+            return variable
+        values = np.ascontiguousarray(variable.values)
+        dim = PAIRS[0 if "carrier_hz" in variable.attrs else 1]
+        return xarray().Variable((*variable.dims, dim), values.view(values.real.dtype).reshape(*values.shape, 2),
+                                 variable.attrs)
+
+    return _changed(data, paired)
+
+
+def as_complex(data):
+    """A Dataset or DataArray with pairs of a real and an imaginary part, as files have them, as complex numbers."""
+    return _changed(data, unpaired)
+
+
+def unpaired(variable):
+    """An xarray.Variable of pairs as complex numbers; else as it is."""
+    if variable.ndim < 2 or variable.dims[-1] not in PAIRS:
+        return variable
+    values = np.ascontiguousarray(variable.values)
+    kind = np.complex128 if values.dtype == np.float64 else np.complex64
+    return xarray().Variable(variable.dims[:-1], values.view(kind)[..., 0], variable.attrs)
+
+
+def _changed(data, change):
+    """A Dataset or DataArray with each of its variables changed."""
+    if isinstance(data, xarray().DataArray):
+        return _changed(data.to_dataset(name=""), change)[""].rename(data.name)
+    return data.assign({name: change(value.variable) for name, value in data.data_vars.items()})
 
 
 MEANINGS = {"target": "number of the target, from 0", "array": "number of the array, from 0",
@@ -199,10 +240,23 @@ def ping(scenario, handle, warnings=()) -> xr.Dataset:
     for name, values in handle.echoes.items():
         unit = UNITS.get(name, "degrees" if name.endswith("_deg")
                          else "dB re 1 µPa" if name == "level_db" else "1")
-        variables[f"echoes/{name}"] = ("echo", values,
+        variables[f"echoes.{name}"] = ("echo", values,
                                        {"units": unit, "long_name": MEANINGS.get(name, name)})
     made = xr.Dataset(variables, coords={"channel": np.arange(pressure.shape[0]),
                                          "time": times(told, pressure.shape[1])},
                       attrs={"filetype": "asdic ping", "title": scenario.title or ""})
     made.encoding["asdic"] = handle  # that asdic.process() knows it again
     return _with_warnings(made, warnings)
+
+
+def ping_of(dataset):
+    """The library's ping behind a dataset of :func:`ping`; None behind others.
+
+    Where the dataset came through a pickle or a file it is simulated again, out of the dataset's scenario.
+    """
+    handle = getattr(dataset, "encoding", {}).get("asdic")
+    if handle is None and {"scenario", "ping", "pressure"} <= set(getattr(dataset, "variables", ())) \
+            and dataset["ping"].ndim == 0:
+        scenario = _core.Scenario.parse(str(dataset["scenario"].values), "scenario.toml")
+        handle = _core.Pinger(scenario, None).ping(int(dataset["ping"]))
+    return handle

@@ -8,6 +8,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from . import _core
 from ._core import InputError
 
@@ -171,21 +173,69 @@ def check(key: str, choices: list, value) -> None:
             raise made(key, f'"{value}"', "one of " + ", ".join(f'"{w}"' for w in words))
 
 
-def check_within(path: str, place: str, value) -> None:
-    """Refuses keys that a table does not have, and numbers out of range, in dictionaries."""
+def unit_of(value) -> str:
+    """The unit that an array gives for itself: `attrs["units"]` of xarray, pandas and h5py, `units` of others.
+
+    "": it gives none.
+    """
+    if isinstance(value, (str, Mapping)):
+        return ""
+    attrs = getattr(value, "attrs", None)
+    told = getattr(value, "units", None) if attrs is None else attrs.get("units")
+    if isinstance(told, Mapping):  # a column of a table, which has the units of all
+        told = told.get(getattr(value, "name", None))
+    return "" if told is None else str(told.decode() if isinstance(told, bytes) else told).strip()
+
+
+def numbers(key: str, value, unit: str, told: str | None = None) -> np.ndarray:
+    """The numbers of an array in `unit`, converted from the unit that it gives for itself, or from `told`.
+
+    Numbers without a unit are in `unit`. Raises InputError for a unit that does not convert to it.
+    """
+    told = unit_of(value) if told is None else told
+    values = np.asarray(value, float)
+    if told in ("", unit) or (told, unit) == ("1", ""):
+        return values
+    zero, one = (_core.measured(f"{x} {told}", unit) for x in "01")
+    if zero is None or one is None:
+        raise made(key, f'units of "{told}"', f'"{unit}", or a unit that converts to it' if unit else "no unit")
+    return values * (one - zero) + zero
+
+
+def place_of(path: str) -> str:
+    """A setting's place in the description by its path: "target.0.depth" is "target[].depth"."""
+    place = ""
+    for key in path.split("."):
+        if not key.isdigit():
+            place = f"{_inside(place)}.{key}" if place else key
+    return place
+
+
+def _inside(place: str) -> str:
+    return place if keys_of(place) else place + "[]"
+
+
+def taken(path: str, place: str, value):
+    """A value as the library takes it: arrays with units in the unit of their setting.
+
+    Raises InputError for keys that a table does not have, numbers out of range, and units that do not convert.
+    """
     if isinstance(value, Mapping):
-        inside = place if keys_of(place) else place + "[]"
+        inside = _inside(place)
         known = keys_of(inside)
-        for name, inner in value.items() if known else ():
+        for name in value if known else ():
             if name not in known:
                 near = difflib.get_close_matches(str(name), known, 3) or known
                 raise made(f"{path}.{name}", "no such setting", "one of " + ", ".join(near))
-            check(f"{path}.{name}", settings().get(f"{inside}.{name}", []), inner)
-            check_within(f"{path}.{name}", f"{inside}.{name}", inner)
-    elif isinstance(value, (list, tuple)):
-        for i, one in enumerate(value):
-            if isinstance(one, Mapping):
-                check_within(f"{path}.{i}", place, one)
+        return {name: taken(f"{path}.{name}", f"{inside}.{name}", inner) for name, inner in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [taken(f"{path}.{i}", place, one) if isinstance(one, Mapping) or unit_of(one) else one
+                for i, one in enumerate(value)]
+    choices = settings().get(place, [])
+    if choices and unit_of(value):
+        value = numbers(path, value, choices[0].unit).tolist()
+    check(path, choices, value)
+    return value
 
 
 def number(key: str, value, unit: str, optional: bool = False):
@@ -193,6 +243,8 @@ def number(key: str, value, unit: str, optional: bool = False):
     if value is None and optional:
         return None
     found = _core.measured(value, unit) if isinstance(value, str) else value
+    if unit_of(found):
+        found = numbers(key, found, unit)
     try:
         return float(found)
     except (TypeError, ValueError):

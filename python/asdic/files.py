@@ -15,14 +15,13 @@ if TYPE_CHECKING:
     import xarray as xr
 
 BELLHOP = (".shd", ".arr", ".ray")
-PAIRS = ("iq", "re_im")  # dimensions of a real and an imaginary part
 
 
 def open(path, load: bool | None = None) -> xr.Dataset:  # noqa: A001
     """A file of asdic's (ping, field, arrivals, rays, study) or of BELLHOP's (.shd, .arr, .ray).
 
     Returns an xarray.Dataset with the file's names, dimensions and units (docs/formats): arrays of
-    groups are called by their path, ``ds["echoes/delay"]``, attributes of groups likewise.
+    groups are called by their path with dots, ``ds["echoes.delay"]``, attributes of groups likewise.
     ``ds.asdic.group("echoes")`` gives a group by itself, ``ds.asdic.table("echoes")`` as a
     DataFrame, ``ds.asdic.pressure`` complex baseband as complex64.
 
@@ -41,14 +40,6 @@ def open(path, load: bool | None = None) -> xr.Dataset:  # noqa: A001
             _core.convert_result(os.fspath(path), made)
             return _read(made, True)
     return _read(os.fspath(path), path.stat().st_size <= 64 << 20 if load is None else load)
-
-
-def _complex(variable):
-    """Pairs of a real and an imaginary part as complex numbers."""
-    if not variable.dims or variable.dims[-1] not in PAIRS or variable.ndim < 2:
-        return variable
-    values = np.ascontiguousarray(variable.values, np.float32).view(np.complex64)[..., 0]
-    return datasets.xarray().Variable(variable.dims[:-1], values, variable.attrs)
 
 
 def run(scenario, progress=None) -> xr.Dataset:
@@ -86,23 +77,24 @@ def _read(path: str, load: bool):
     told = variables["pressure"].attrs if "pressure" in variables else {}
     timed = "time_start" in told and "sample" in whole.sizes and np.ndim(told["time_start"]) == 0
     sizes = dict(whole.sizes) | ({"time": 0} if timed else {})  # that no group's dimension has
-    for name in groups:
-        part = xr.open_dataset(path, engine="h5netcdf", group=name, decode_times=False,
+    for path_of_group in groups:
+        name = datasets.flat(path_of_group)
+        part = xr.open_dataset(path, engine="h5netcdf", group=path_of_group, decode_times=False,
                                phony_dims="access")
         part = part.load() if load else part
-        own = {dim: f"{name}/{dim}" for dim in part.dims
+        own = {dim: f"{name}.{dim}" for dim in part.dims
                if part.sizes[dim] != sizes.get(dim, part.sizes[dim])}
         sizes = dict(part.sizes) | sizes
         for key, value in part.variables.items():
             dims = tuple(own.get(dim, dim) for dim in value.dims)
-            variables[f"{name}/{key}"] = xr.Variable(dims, value._data, value.attrs)
-        attrs |= {f"{name}/{key}": value for key, value in part.attrs.items()}
+            variables[f"{name}.{key}"] = xr.Variable(dims, value._data, value.attrs)
+        attrs |= {f"{name}.{key}": value for key, value in part.attrs.items()}
         if load:
             part.close()
     if load:
         made.close()
     if load:
-        variables = {name: _complex(value) for name, value in variables.items()}
+        variables = {name: datasets.unpaired(value) for name, value in variables.items()}
     if timed:
         variables["time"] = xr.Variable(*datasets.times(told, whole.sizes["sample"]))
     coords = {name: value for name, value in variables.items()

@@ -41,7 +41,7 @@ except ModuleNotFoundError as error:
                               "python3-matplotlib)", name=error.name) from None
 from asdic_pictures.output import Tags as _Tags
 
-from . import _core, described, files
+from . import _core, datasets, described, files
 
 __all__ = ["ambiguity", "area", "array", "arrivals", "bearing_time", "compare", "detections",
            "geometry", "levels", "matched_filter", "placement", "ppi", "pressure", "pulse", "range_bearing",
@@ -81,7 +81,7 @@ class _Row:
 @contextmanager
 def _ping(source):
     """A ping file open for reading: a dataset of Scenario.ping is written to one for the time."""
-    handle = getattr(source, "encoding", {}).get("asdic") if _source.is_dataset(source) else None
+    handle = datasets.ping_of(source) if _source.is_dataset(source) else None
     try:
         if handle is None:
             with _api.opened(source) as data:
@@ -93,7 +93,7 @@ def _ping(source):
             path = os.path.join(folder, "ping.h5")
             _core.write_ping(path, handle.scenario, handle)
             data = _data.PingFile(path)
-            values = np.ascontiguousarray(source["pressure"].values)
+            values = np.ascontiguousarray(datasets.as_complex(source["pressure"]).values)
             if values.shape == handle.pressure.shape \
                     and not np.may_share_memory(values, handle.pressure):   # it was changed
                 data.file = _Over(data.file, {"pressure": _Row(values, h5py.File(path)["pressure"])})

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from . import _core, files
+from .scenario import _text
 from .told import tell
 
 if TYPE_CHECKING:
@@ -36,7 +37,7 @@ def place(plan: str | os.PathLike, output: str | os.PathLike | None = None, *,
         ``detection_probability`` over (depth, cell), …; ``attrs`` has the numbers of the answer.
     """
     if isinstance(changes, Mapping):
-        changes = [f"{key}={_core.toml(value)}" for key, value in changes.items()]
+        changes = [f"{key}={_text(value)}" for key, value in changes.items()]
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "placement.h5") if output is None else os.fspath(output)
         warnings = _core.write_placement(path, os.fspath(plan), list(changes), progress)

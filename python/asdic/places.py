@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 
-from . import _core
+from . import _core, described
 from .scenario import Scenario
 
 
@@ -75,6 +75,11 @@ def ocean(latitude: float, longitude: float, month: int | None = None, *, date=N
     files = {"temperature": _names(temperature), "salinity": _names(salinity),
              "sound_speed": _names(sound_speed), "bathymetry": _names(bathymetry),
              "wind": _names(wind), "sediment": _names(sediment)}
+    latitude, longitude = (described.number(key, value, "degrees")
+                           for key, value in (("latitude", latitude), ("longitude", longitude)))
+    bearing_deg = described.number("bearing_deg", bearing_deg, "degrees", True)
+    range, step, area = (described.number(key, value, "m", True)
+                         for key, value in (("range", range), ("step", step), ("area", area)))
     day = "" if date is None else date if isinstance(date, str) else date.isoformat()
     core, origins, notes = _core.ocean(latitude, longitude, month, day, bearing_deg, range, step,
                                        area, "" if output is None else os.fspath(output), files,

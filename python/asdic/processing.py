@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import _core, described
+from . import _core, datasets, described
 from .told import tell
 
 if TYPE_CHECKING:
@@ -19,8 +19,9 @@ OPTIONS: dict[str, Any] = {
     "across_beams": bool, "guard_cells": "", "reference_cells": "", "false_alarm_probability": "",
     "sub_bands": "", "cancel_direct_blast": bool, "start": "s", "stop": "s", "target_depth": "m", "range_speed": "m/s"}
 
-UNITS = {"time": "s", "bearing_deg": "degrees", "elevation_deg": "degrees", "snr_db": "dB",
-         "excess_db": "dB", "level_db": "dB re 1 µPa", "east": "m", "north": "m", "depth": "m",
+UNITS = {"time": "s", "look_bearing_deg": "degrees", "look_elevation_deg": "degrees",
+         "bearing_deg": "degrees", "snr_db": "dB", "excess_db": "dB", "level_db": "dB re 1 µPa",
+         "east": "m", "north": "m", "depth": "m",
          "range": "m", "range_rate": "m/s", "latitude": "degrees", "longitude": "degrees",
          "velocity_east": "m/s", "velocity_north": "m/s", "position_sigma": "m"}
 EARTH = ("latitude", "longitude")
@@ -33,7 +34,7 @@ class Processed:
     Attributes
     ----------
     detections : pandas.DataFrame
-        ping, array, time [s], doppler_factor, bearing_deg, elevation_deg, snr_db, excess_db,
+        ping, array, time [s], doppler_factor, look_bearing_deg, look_elevation_deg, snr_db, excess_db,
         level_db, target (-1 a false alarm, -2 the direct sound, -3 another ping).
     places : pandas.DataFrame
         Where a detection may be: detection, east, north, depth [m] when it was struck, range [m],
@@ -63,7 +64,8 @@ def process(source, progress=None, **options) -> Processed:
     Parameters
     ----------
     source : xarray.Dataset, sequence of them, or path
-        What :meth:`Scenario.ping` gave, several pings of one scenario in order, or a ping file.
+        What :meth:`Scenario.ping` gave, several pings of one scenario in order, or a ping file. A ping
+        that came through a pickle or a netCDF file is simulated again.
     **options
         mvdr, hann_shading, max_speed [m/s], split_window, across_beams, guard_cells,
         reference_cells, false_alarm_probability, sub_bands, cancel_direct_blast, start, stop [s],
@@ -110,11 +112,11 @@ def process(source, progress=None, **options) -> Processed:
 
 
 def _handle(dataset):
-    handle = getattr(dataset, "encoding", {}).get("asdic")
-    own = handle is not None and "pressure" in dataset \
-        and np.may_share_memory(dataset["pressure"].values, handle.pressure) \
-        and dataset["pressure"].shape == handle.pressure.shape
-    if not own:
-        raise described.made("source", "a dataset that was changed, or came from elsewhere",
-                             "one as Scenario.ping() gave it, or the path of a ping file")
-    return handle
+    handle = datasets.ping_of(dataset)
+    if handle is not None:
+        values = datasets.as_complex(dataset["pressure"]).values
+        if np.may_share_memory(values, handle.pressure) and values.shape == handle.pressure.shape \
+                or np.array_equal(values, handle.pressure):
+            return handle
+    raise described.made("source", "a dataset that was changed, or came from elsewhere",
+                         "one as Scenario.ping() gave it, or the path of a ping file")

@@ -81,10 +81,7 @@ class _Table:
         if value is None:
             self._core.erase(path)
             return
-        value = oceans.setting(place, value)
-        described.check(path, described.settings().get(place, []), value)
-        described.check_within(path, place, value)
-        self._core.set(path, value)
+        self._core.set(path, oceans.setting(path, place, value))
 
     def __delattr__(self, name: str) -> None:
         self._core.erase(self._of(name)[0])
@@ -166,10 +163,11 @@ class _List(Sequence):
 
     def append(self, table: Mapping | None = None, **settings) -> None:
         """One more, of a dictionary or of keywords."""
+        made = described.taken(f"{self._path}.{len(self)}", self._place, {**(table or {}), **settings})
         there = self._there()
         if isinstance(there, dict):
             self._core.set(self._path, [there])
-        self._core.add(self._path, {**(table or {}), **settings})
+        self._core.add(self._path, made)
 
     def clear(self) -> None:
         self._core.erase(self._path)
@@ -221,6 +219,7 @@ class Scenario(_Table):
         or over range and depth; a dictionary of the file's own keys.
     bathymetry : optional
         A depth [m]; pairs (range, depth), [n, 2]; a Series, DataFrame or DataArray over range.
+        Where these give units (``attrs["units"]``), they are converted.
     bottom : mapping, optional
         What lies below, ``{"kind": "rigid"}``. A bathymetry without it lies on medium sand:
         ``{"kind": "grain-size", "grain_size": 1.5}``.
@@ -238,11 +237,13 @@ class Scenario(_Table):
 
     def __init__(self, file=None, *, set: Mapping | None = None, sound_speed=None, bathymetry=None,
                  bottom: Mapping | None = None, **sections):
+        changes = {key: described.taken(key, described.place_of(key), value)
+                   for key, value in (set or {}).items()}
         if file is None:
             core = _core.Scenario()
         else:
             core = _core.Scenario.read(os.fspath(file),
-                                       [f"{key}={_text(value)}" for key, value in (set or {}).items()])
+                                       [f"{key}={_text(value)}" for key, value in changes.items()])
         super().__init__(core, "", "")
         if sound_speed is not None:
             core.set("environment.sound_speed", oceans.sound_speed(sound_speed))
@@ -250,26 +251,26 @@ class Scenario(_Table):
             for key, value in oceans.bathymetry(bathymetry).items():
                 core.set(f"environment.bottom.{key}", value)
         for key, value in (bottom or {}).items():
-            core.set(f"environment.bottom.{key}", value)
+            place = f"environment.bottom.{key}"
+            core.set(place, oceans.setting(place, place, value))
         if bathymetry is not None and not core.has("environment.bottom.kind"):
             for key, value in oceans.SAND.items():
                 core.set(f"environment.bottom.{key}", value)
         self._take(sections)
         if file is None:
-            for key, value in (set or {}).items():
+            for key, value in changes.items():
                 core.set(key, value)
 
     def _take(self, sections: Mapping) -> None:
         """Sections by their names; a table is put into one that is there."""
         for name, value in sections.items():
             path, place = self._of(name)
-            described.check(path, described.settings().get(place, []), value)
-            described.check_within(path, place, value)
+            value = oceans.setting(path, place, value)
             if isinstance(value, Mapping) and isinstance(self._get(path), dict):
                 for key, inner in value.items():
-                    self._core.set(f"{path}.{key}", oceans.setting(f"{place}.{key}", inner))
+                    self._core.set(f"{path}.{key}", inner)
             else:
-                self._core.set(path, oceans.setting(place, value))
+                self._core.set(path, value)
 
     @classmethod
     def parse(cls, text: str, name="scenario.toml") -> Scenario:
@@ -301,14 +302,16 @@ class Scenario(_Table):
         return self.copy()
 
     def __reduce__(self):
-        return Scenario.parse, (self.to_toml(),)
+        own: tuple[str, ...] = type(self).__slots__
+        return _restored, (type(self), self.to_toml(), os.path.abspath(self._core.path()),
+                           {name: getattr(self, name) for name in own})
 
     def set(self, path: str, value) -> Scenario:
         """Sets what stands at a path, ``"target.0.depth"``. → self"""
         if value is None:
             self._core.erase(path)
         else:
-            self._core.set(path, value)
+            self._core.set(path, oceans.setting(path, described.place_of(path), value))
         return self
 
     def get(self, path: str):
@@ -441,7 +444,8 @@ class Scenario(_Table):
         if not core.has("platform") and not core.has("run"):
             core = self._with_run(frequency=1000.0, source_depth=source_depth, depths=[0.0],
                                   ranges=[range])._core
-        found = _core.rays(core, lowest_deg, highest_deg, count, list(elevations_deg), range,
+        elevations = described.numbers("elevations_deg", elevations_deg, "degrees").tolist()
+        found = _core.rays(core, lowest_deg, highest_deg, count, elevations, range,
                            source_depth, bounces)
         told = core.warnings()
         tell(told)
@@ -458,7 +462,8 @@ class Scenario(_Table):
         if not core.has("platform") and not core.has("run"):
             core = self._with_run(frequency=1000.0, source_depth=0.0, depths=[0.0],
                                   ranges=[1.0])._core
-        z = np.atleast_1d(np.asarray(depths, float))
+        z = np.atleast_1d(described.numbers("depths", depths, "m"))
+        range = described.number("range", range, "m")
         return datasets.profile(z, _core.sound_speed(core, z.tolist(), range))
 
     def waveform(self, sample_rate: float | None = None, transmitter: int | str = 0) -> xr.DataArray:
@@ -471,6 +476,7 @@ class Scenario(_Table):
         its window. Pressure at 1 m is ``np.sqrt(2) * 1e-6 * 10**(SL / 20) * w.real`` [Pa] with
         ``w.attrs["source_level_db"]``; ``energy_s`` is the integral of its square.
         """
+        sample_rate = described.number("sample_rate", sample_rate, "Hz", True)
         return datasets.waveform(_core.waveform(self._core, self._number("transmitter", transmitter),
                                                 sample_rate))
 
@@ -510,10 +516,11 @@ class Scenario(_Table):
         if frequency is None and not made._core.has("run.frequency") \
                 and not made._core.has("platform"):
             raise described.made("frequency", "nothing", "one [Hz]")
-        for key, value in (("run.frequency", frequency), ("run.source.depth", source_depth),
-                           ("run.receivers.depth", depths), ("run.receivers.range", ranges)):
+        for key, value, unit in (("run.frequency", frequency, "Hz"), ("run.source.depth", source_depth, "m"),
+                                 ("run.receivers.depth", depths, "m"),
+                                 ("run.receivers.range", ranges, "m")):
             if value is not None:
-                made._core.set(key, np.asarray(value, float).tolist())
+                made._core.set(key, described.numbers(key, value, unit).tolist())
         if not made._core.has("run.source.depth") and made._core.has("platform"):
             made._core.set("run.source.depth", float(self.platforms[0].position[2]))
         if not made._core.has("run.frequency"):
@@ -536,7 +543,7 @@ class Scenario(_Table):
         Returns an xarray.Dataset with the names, dimensions and units of the ping file
         (docs/formats/ping.md): ``pressure`` (channel, sample) [Pa], float32, or complex64 where the
         scenario asks for complex baseband, not copied and not to be written to; ``time`` [s];
-        ``phone_position`` [m]; the truth as ``echoes/delay`` and so on.
+        ``phone_position`` [m]; the truth as ``echoes.delay`` and so on.
 
         What to know before trusting a number is warned of (AsdicWarning), and in
         ``attrs["warnings"]``.
@@ -581,8 +588,7 @@ class Scenario(_Table):
         duration = described.number("duration", duration, "s", True)
         step = described.number("step", step, "s")
         frequency = described.number("frequency", frequency, "Hz", True)
-        found = Channel(self, _core.channel(self._core, first, receiver, duration, step, frequency,
-                                            held))
+        found = Channel(self, (first, receiver, duration, step, frequency, held))
         tell(self.warnings)
         tell(found.warnings)
         return found
@@ -596,8 +602,18 @@ class Scenario(_Table):
         raise described.made(kind, f'"{asked}"', "one of " + ", ".join(f'"{n}"' for n in names))
 
 
+def _restored(kind, text: str, path: str, own: dict):
+    """A scenario out of a pickle. → `kind`"""
+    made = kind._of_core(_core.Scenario.parse(text, path))
+    for name, value in own.items():
+        object.__setattr__(made, name, value)
+    return made
+
+
 def _text(value) -> str:
     """A value as --set takes it."""
+    if described.unit_of(value):
+        raise described.made("set", f'a value with units of "{described.unit_of(value)}"', "one in the setting's unit")
     return value if isinstance(value, str) else _core.toml(value)
 
 

@@ -159,11 +159,20 @@ def study(source, output=None, *, measures: Mapping | None = None, set: Mapping 
             core.set("summary", dict(summary))
         text = core.to_toml()
         # keys of [vary] have dots
-        lines = "".join(f'"{key}" = {_core.toml(value)}\n' for key, value in (vary or {}).items())
+        lines = "".join(f'"{key}" = {_core.toml(_law(key, value))}\n' for key, value in (vary or {}).items())
         with open(plan, "x", encoding="utf-8") as to:
             to.write(text.replace("[vary]\n", "[vary]\n" + lines) if "[vary]\n" in text
                      else text + "\n[vary]\n" + lines)
         return run(plan)
+
+
+def _law(key: str, law):
+    """A law of [vary], its arrays in the unit of the setting that varies."""
+    choices = described.settings().get(described.place_of(key), [])
+    unit = choices[0].unit if choices else ""
+    return law if not isinstance(law, Mapping) else {
+        name: described.numbers(f"vary.{key}.{name}", value, unit).tolist() if described.unit_of(value) else value
+        for name, value in law.items()}
 
 
 def _called(function):

@@ -2,7 +2,7 @@
 
 Readers (data.py, results.py, study_data.py, scene.py) know h5py's way of asking: `f["echoes/delay"]`,
 `"rays" in f`, `f.attrs`. A dataset of xarray, as `asdic.open` and `Scenario.ping` give it, answers
-the same way here. xarray itself is not needed.
+the same way here: its "echoes.delay" is the file's "echoes/delay". xarray itself is not needed.
 """
 from __future__ import annotations
 
@@ -128,11 +128,12 @@ class Kept:
 
 
 def of_dataset(dataset):
-    """Arrays of groups are called by their path, "echoes/delay"; so are their attributes."""
+    """A file's arrays and attributes by their paths."""
     if is_open(dataset):
         return Kept(dataset)
     if not hasattr(dataset, "subtree"):
-        return Group({str(k): v for k, v in dataset.variables.items()}, dict(dataset.attrs))
+        return Group({str(k).replace(".", "/"): v for k, v in dataset.variables.items()},
+                     {str(k).replace(".", "/"): v for k, v in dataset.attrs.items()})
     variables, attributes = {}, {}
     for node in dataset.subtree:
         at = node.path.strip("/")

@@ -88,7 +88,12 @@ void add_ping(py::module_& module) {
       .def_property_readonly("pressure", &pressure_of)
       .def_property_readonly("phones", &phones_of)
       .def_property_readonly("echoes", &echoes_of)
-      .def_property_readonly("scenario", &Ping::scenario);
+      .def_property_readonly("scenario", &Ping::scenario)
+      // Samples never change, so copies share them. A pickle holds None in its place: the dataset
+      // has the scenario and the number that it is made of (datasets.ping_of).
+      .def("__deepcopy__", [](const py::object& self, const py::object&) { return self; })
+      .def("__reduce__",
+           [](const Ping&) { return py::make_tuple(py::type::of(py::none()), py::tuple()); });
   py::class_<Pinger>(module, "Pinger")
       .def(py::init([](const Scenario& scenario, const py::object& progress) {
         return watched([&](const Watch& watch) { return Pinger(scenario, watch); }, progress);

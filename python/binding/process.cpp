@@ -58,20 +58,21 @@ py::dict shown(const Processed& all) {
     tracks.append(py::dict("array"_a = track.array, "ambiguous"_a = track.ambiguous,
                            "target"_a = track.target, "points"_a = points));
   }
-  return py::dict(
-      "detections"_a = py::dict(
-          "ping"_a = whole([](const Detection& d) { return d.ping; }),
-          "array"_a = whole([](const Detection& d) { return d.array; }),
-          "time"_a = number([](const Detection& d) { return d.time; }),
-          "doppler_factor"_a = number([](const Detection& d) { return d.doppler; }),
-          "bearing_deg"_a = number([](const Detection& d) { return bearing_deg(d.bearing); }),
-          "elevation_deg"_a = number([](const Detection& d) { return degrees(d.elevation); }),
-          "snr_db"_a = number([](const Detection& d) { return d.snr_db; }),
-          "excess_db"_a = number([](const Detection& d) { return d.excess_db; }),
-          "level_db"_a = number([](const Detection& d) { return d.level_db; }),
-          "target"_a = whole([](const Detection& d) { return d.target; })),
-      "places"_a = places, "tracks"_a = tracks, "warnings"_a = all.warnings, "notes"_a = all.notes,
-      "on_earth"_a = all.on_earth);
+  return py::dict("detections"_a = py::dict(
+                      "ping"_a = whole([](const Detection& d) { return d.ping; }),
+                      "array"_a = whole([](const Detection& d) { return d.array; }),
+                      "time"_a = number([](const Detection& d) { return d.time; }),
+                      "doppler_factor"_a = number([](const Detection& d) { return d.doppler; }),
+                      "look_bearing_deg"_a =
+                          number([](const Detection& d) { return bearing_deg(d.look_bearing); }),
+                      "look_elevation_deg"_a =
+                          number([](const Detection& d) { return degrees(d.look_elevation); }),
+                      "snr_db"_a = number([](const Detection& d) { return d.snr_db; }),
+                      "excess_db"_a = number([](const Detection& d) { return d.excess_db; }),
+                      "level_db"_a = number([](const Detection& d) { return d.level_db; }),
+                      "target"_a = whole([](const Detection& d) { return d.target; })),
+                  "places"_a = places, "tracks"_a = tracks, "warnings"_a = all.warnings,
+                  "notes"_a = all.notes, "on_earth"_a = all.on_earth);
 }
 
 }  // namespace

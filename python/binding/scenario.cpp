@@ -43,6 +43,7 @@ void add_scenario(py::module_& module) {
       .def("has", [](const Scenario& s, const std::string& path) { return s.has(path); })
       .def("get", [](const Scenario& s, const std::string& path) { return object_of(s.get(path)); })
       .def("to_toml", &Scenario::to_toml)
+      .def("path", [](const Scenario& s) { return s.path().string(); })
       .def("warnings", &Scenario::warnings)
       .def("validate", [](const Scenario& s, const py::object& progress) {
         return watched([&](const Watch& watch) { return s.validate(watch); }, progress);

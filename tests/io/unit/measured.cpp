@@ -34,7 +34,12 @@ TEST(Measured, NumbersWithUnitsAreReadInSi) {
                                           {"250ms", 0.25, "s"},
                                           {"36km/h", 10.0, "m/s"},
                                           {"1e3m", 1000.0, "m"},
-                                          {"12deg", 12.0, "degrees"}}) {
+                                          {"12deg", 12.0, "degrees"},
+                                          {"12 degrees_north", 12.0, "degrees"},
+                                          {"5000 ft/s", 1524.0, "m/s"},
+                                          {"3 metres", 3.0, "m"},
+                                          {"3 m s-1", 3.0, "m/s"},
+                                          {"273.15 K", 0.0, "degC"}}) {
     const auto read = parse_measured(text);
     ASSERT_TRUE(read) << text;
     EXPECT_DOUBLE_EQ(read->value, value) << text;

@@ -454,11 +454,11 @@ class Pings(unittest.TestCase):
         self.assertEqual(file.time.dims, ("sample",))
         truth = s.ping()
         for name in ("delay", "level_db", "doppler_factor", "arrival_bearing_deg"):
-            np.testing.assert_allclose(truth[f"echoes/{name}"], file[f"echoes/{name}"], rtol=1e-12)
-        bearing = a.detections.bearing_deg
+            np.testing.assert_allclose(truth[f"echoes.{name}"], file[f"echoes.{name}"], rtol=1e-12)
+        bearing = a.detections.look_bearing_deg
         self.assertTrue(((bearing >= 0.0) & (bearing < 360.0) | bearing.isna()).all())
         maps = "processed/maps/array_0"
-        self.assertEqual(file.asdic.group(maps).sizes["time"], file.sizes[maps + "/time"])
+        self.assertEqual(file.asdic.group(maps).sizes["time"], file.sizes[maps.replace("/", ".") + ".time"])
         with self.assertRaises(asdic.InputError):
             asdic.process(s.ping().assign(pressure=0.0 * s.ping().pressure))
         with self.assertRaises(asdic.InputError):

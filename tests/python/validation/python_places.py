@@ -152,7 +152,7 @@ class Shown(unittest.TestCase):
                 np.testing.assert_array_equal(asdic.open(file, load=load).time, ping.time)
         part = ping.swap_dims(sample="time").sel(time=slice(0.5, 0.6))
         self.assertAlmostEqual(float(part.time[0]), 0.5, 4)
-        self.assertIn("from the target", ping["echoes/arrival_bearing_deg"].attrs["long_name"])
+        self.assertIn("from the target", ping["echoes.arrival_bearing_deg"].attrs["long_name"])
 
     def test_help_is_shown_as_lines(self):
         s = asdic.Scenario(SCENARIOS / "modem.toml")
