@@ -198,8 +198,14 @@ def equal_layers(s, p):
 
 @law
 def no_focus_in_isovelocity(s, p):
-    """In water of one speed and depth waves add nothing to images: diffraction on and off are the same."""
+    """In water of one speed between walls that reflect all angles alike waves add nothing to images: diffraction on and off
+    are the same. Off other walls waves are not reflected as plane waves are, and rays have no part in that."""
     s = stratified(plain(s))
+    e = s["environment"]
+    for name, kind in (("bottom", p("bottom", ["rigid", "vacuum"])), ("surface", "vacuum")):
+        wall = e.get(name, {"kind": "vacuum"})
+        kept = {k: v for k, v in wall.items() if k == "depth" or k.startswith(("roughness", "bubbles"))}
+        e[name] = {"kind": wall["kind"] if wall["kind"] in ("rigid", "vacuum") else kind} | kept
     s["environment"]["sound_speed"] = {"kind": "isovelocity", "speed": 1500.0}
     s["propagation"]["diffraction"] = True
     first = ping(s)
