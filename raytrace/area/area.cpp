@@ -80,16 +80,25 @@ class FloorTracer {
   FloorTracer(const Area& area, const Vec2& place, double bearing)
       : area_(area), place_(place), way_(std::sin(bearing), std::cos(bearing)) {}
 
-  /// Of a bicubic floor. \param step  of the grid [m]
+  /// Of a bicubic floor. Nodes lie at multiples of a step from where the plane passes the map's
+  /// [0, 0] nearest, in whole blocks of steps: the way back has the same ones, and they stay where
+  /// they are as its ends move along it. \param step  of the grid, at the map's [0, 0] [m]
   std::vector<FloorSample> smooth(double step, double reach) {
-    const auto steps = static_cast<std::size_t>(std::ceil(reach / step)) + 1;
+    const double along = place_.dot(way_);  // of the place, from there
+    const double block = double(longest) * step;
+    double begin = (std::floor(along / step) - double(behind)) * step - along,
+           end = (std::ceil((along + reach) / step) + 1.0) * step - along;
+    const double earlier = std::floor((along + begin) / block) * block - along,
+                 later = std::ceil((along + end) / block) * block - along;
+    if (has_no_hole(earlier, begin)) begin = earlier;
+    if (has_no_hole(end, later)) end = later;
     samples_.clear();
-    for (std::size_t i = 0; i <= steps + behind; ++i)
-      samples_.push_back(at((double(i) - double(behind)) * step));
+    const double first = std::round((along + begin) / step);
+    const auto steps = static_cast<std::size_t>(std::lround((end - begin) / step));
+    for (std::size_t i = 0; i <= steps; ++i)
+      samples_.push_back(at((first + double(i)) * step - along));
     nodes_ = {samples_.front()};
-    constexpr std::size_t longest = 32;
-    for (std::size_t i = 0; i + 1 < samples_.size(); i += longest)
-      span(i, std::min(i + longest, samples_.size() - 1));
+    for (std::size_t i = 0; i < steps; i += longest) span(i, std::min(i + longest, steps));
     return nodes_;
   }
 
@@ -113,7 +122,14 @@ class FloorTracer {
   }
 
  private:
-  static constexpr std::size_t behind = 2;  // steps before the plane's place
+  static constexpr std::size_t behind = 2;   // steps before the plane's place
+  static constexpr std::size_t longest = 8;  // number of steps between nodes
+
+  /// Whether the map has a value everywhere between two ranges.
+  [[nodiscard]] bool has_no_hole(double from, double to) const {
+    const Vec2 a = place_ + from * way_, b = place_ + to * way_;
+    return area_.floor().least_within(a.cwiseMin(b), a.cwiseMax(b)) > -infinity;
+  }
 
   [[nodiscard]] FloorSample at(double r) const {
     const double x = place_.x() + r * way_.x(), y = place_.y() + r * way_.y();
@@ -240,7 +256,7 @@ class FloorTracer {
 Boundary Area::floor_along(const Vec2& place, double bearing, double reach) const {
   FloorTracer tracer(*this, place, bearing);
   const bool smooth = maps_.floor.interpolation() == MapInterpolation::bicubic;
-  double step = spacing(place);
+  double step = spacing(smooth ? Vec2::Zero() : place);
   if (maps_.seabed) step = std::min(step, maps_.seabed->spacing(place.x(), place.y()));
   const std::vector<FloorSample> nodes =
       smooth ? tracer.smooth(step, reach) : tracer.faceted(step, reach);

@@ -99,6 +99,25 @@ double wavenumber(Complex p, Complex slope) {
   return -(std::conj(p) * slope).imag() / std::norm(p);
 }
 
+/// Share of a wave that comes with what the bottom close below one of its ends sends back at once:
+/// p(z) + R·p(2D − z) over p(z), with p exponential on so short a way, as it was without the
+/// bottom. It is 1 where the end is too high for the two to be one arrival. \param slope  ∂p/∂z of
+/// the end
+Complex beside_bottom(const Environment& ocean, double depth, double slowness, double frequency,
+                      Complex p, Complex slope) {
+  constexpr double steepest = 0.07;  // of waves that stay in the water, 4° [rad]
+  const double bottom = ocean.bottom.depth, height = bottom - depth, c = ocean.water.at(bottom).c;
+  const Complex change = 2.0 * height * slope / p;
+  const double phase =
+      std::max(std::abs(change), 2.0 * height * steepest * 2.0 * pi * frequency / c);
+  if (!(phase < pi)) return 1.0;
+  const double near = std::pow(std::cos(0.5 * phase), 2);
+  const Complex reflected = reflection_coefficient(
+      ocean.bottom.material, std::acos(std::clamp(slowness * c, 0.0, 1.0)),
+      {.speed = c, .density = ocean.water_density.at(bottom), .frequency = frequency});
+  return 1.0 + near * reflected * std::exp(change);
+}
+
 /// \param least  amplitude below which there is nothing
 std::optional<Arrival> louder_arrival(const Environment& ocean, double source_depth,
                                       double receiver_depth, double range, double frequency,
@@ -114,12 +133,15 @@ std::optional<Arrival> louder_arrival(const Environment& ocean, double source_de
   if (!found) return std::nullopt;
   const WaveAt& wave = found->wave;
   const double slowness = wavenumber(wave.p, wave.along) / (2.0 * pi * frequency);
+  const Complex p =
+      wave.p * beside_bottom(ocean, source_depth, slowness, frequency, wave.p, wave.by_source) *
+      beside_bottom(ocean, receiver_depth, slowness, frequency, wave.p, wave.by_receiver);
 
   Arrival path;
   path.kind = ArrivalKind::diffracted;
   path.delay = found->delay;
-  path.amplitude = wave.p * std::polar(1.0, 2.0 * pi * std::fmod(frequency * path.delay, 1.0));
-  path.spreading = std::abs(wave.p);
+  path.amplitude = p * std::polar(1.0, 2.0 * pi * std::fmod(frequency * path.delay, 1.0));
+  path.spreading = std::abs(p);
   path.horizontal_slowness = slowness;
   // p goes as e^{+ikz} with the depth of the source.
   path.launch_elevation =

@@ -1,6 +1,7 @@
 #include "sonar/echoes/direct_blast.h"
 
 #include <algorithm>
+#include <span>
 
 #include "core/doppler.h"
 #include "core/mixed_bits.h"
@@ -92,17 +93,18 @@ Vec3 receive(const EchoContext& context, int channel, DirectBlast& blast) {
                                                 .limits = paths.limits});
   for (std::size_t i = 0; i < paths.met.size(); ++i) {
     const MetPath& met = paths.met[i];
-    EchoPath path_received = received_along(context, source, met);
-    path_received.received.delay -=
-        path_received.received.slowness.dot(x);  // at the reference point
-    path_received.received.channel = channel < 0 ? Return::all_channels : channel;
-    path_received.curve = curve_of(context, source, paths.receiver, channel, met,
-                                   path_received.received, paths.limits);
+    const EchoPath path_received = received_along(context, source, met);
     const std::size_t own = blast.received.size();
     blast.received.push_back(path_received);
     scatter_along(context, source, 0.0, met,
                   mixed(static_cast<std::uint64_t>(geometry.sent().transmitter), ~0ULL),
                   path_received, blast.received);
+    for (EchoPath& one : std::span(blast.received).subspan(own)) {
+      one.received.delay -= one.received.slowness.dot(x);  // at the reference point
+      one.received.channel = channel < 0 ? Return::all_channels : channel;
+    }
+    blast.received[own].curve = curve_of(context, source, paths.receiver, channel, met,
+                                         blast.received[own].received, paths.limits);
     if (leg != nullptr) blast.received[own].legs = {path_on_leg(leg, i, source.position, met)};
   }
   shorten_bounces(paths.leg.arrivals,

@@ -143,6 +143,11 @@ class EchoFinder {
     return geometry_.receiver(context_.array, channel);
   }
 
+  /// Place from the reference point of which a return tells, also where its path is a phone's own.
+  [[nodiscard]] Vec3 from_reference(int channel) const {
+    return channel < 0 ? Vec3(Vec3::Zero()) : phones_[static_cast<std::size_t>(channel)];
+  }
+
   /// Way back from where the first sound strikes the target.   \param known  paths to a place
   /// nearby
   [[nodiscard]] Way way_back(const Way& out, int channel,
@@ -372,6 +377,7 @@ class EchoFinder {
     const double c = context_.paths.speed_at(pair.home.way.end.position);
     const double pressure = std::sqrt(scattered);
     for (const EchoPath& echo : echoes) {
+      const Vec3 x = from_reference(echo.received.channel);
       // what the glint itself sends back, and the transmitter to there
       const std::complex<double> of_glint = echo.glint,
                                  pattern = context_.pattern.towards(echo.response.bearing,
@@ -380,12 +386,12 @@ class EchoFinder {
                scenario_.environment, legs, context_.frequency, parts_, scenario_.seed, name)) {
         EchoPath one = echo;
         one.curve.reset();
-        one.received.delay += part.delay;
         one.received.doppler *= 1.0 + part.shift / context_.frequency;
         one.received.slowness =
             met_by(pair.home.way.end.velocity,
                    slowness_vector(arrival_bearing(home, pair.home.way.leg.bearing) + part.bearing,
                                    home.arrival_elevation + part.elevation, c));
+        one.received.delay += part.delay + (echo.received.slowness - one.received.slowness).dot(x);
         one.response.without_pattern = pressure * part.amplitude * of_glint;
         one.received.amplitude = one.response.without_pattern * pattern;
         one.level_db = source_level_db() + db_from_amplitude(std::abs(one.received.amplitude));
@@ -453,8 +459,7 @@ class EchoFinder {
                      .elevation = elevation};
     const std::vector<Glint> seen = glints(scenario_, index_, context_.look(), into_target,
                                            out_of_target, geometry_.time() + pair.there.time);
-    // A return tells of the reference point, also where its path is a phone's own.
-    const Vec3 x = channel < 0 ? Vec3::Zero() : phones_[static_cast<std::size_t>(channel)];
+    const Vec3 x = from_reference(channel);
     std::vector<EchoPath> echoes;
     for (const Glint& glint : seen) {
       echo.highlight = glint.highlight;

@@ -167,19 +167,26 @@ std::vector<EchoPath> PingSimulator::sparse_returns(const EchoContext& context,
   return received;
 }
 
-/// A recording of the same kind that holds all echoes, whenever they are received.
-static Recording around(Recording recording, const Pulse& pulse, std::span<const EchoPath> echoes) {
-  double first = infinity, last = -infinity;
-  for (const EchoPath& echo : echoes) {
-    const Return& received = echo.received;
-    first = std::min(first, echo.curve ? echo.curve->first_received() : received.delay);
-    last = std::max(last, echo.curve ? echo.curve->last_received()
-                                     : received.delay + pulse.duration() / received.doppler);
+/// When the first and the last of an echo is received, since the start of the ping [s].
+static std::pair<double, double> received_between(const Pulse& pulse, const EchoPath& echo) {
+  const Return& received = echo.received;
+  if (echo.curve) return {echo.curve->first_received(), echo.curve->last_received()};
+  return {received.delay, received.delay + pulse.duration() / received.doppler};
+}
+
+/// Times in which echoes are received, with nothing for as long as a pulse between them: first and
+/// last [s], in order.
+static std::vector<std::pair<double, double>> times_of(const Pulse& pulse,
+                                                       std::span<const EchoPath> echoes) {
+  std::vector<std::pair<double, double>> each, together;
+  for (const EchoPath& echo : echoes) each.push_back(received_between(pulse, echo));
+  std::sort(each.begin(), each.end());
+  for (const auto& [first, last] : each) {
+    if (together.empty() || first > together.back().second + pulse.duration())
+      together.emplace_back(first, last);
+    together.back().second = std::max(together.back().second, last);
   }
-  recording.start = first;
-  recording.samples =
-      static_cast<std::size_t>(std::ceil((last - first) * recording.sample_rate)) + 1;
-  return recording;
+  return together;
 }
 
 std::vector<BandPart> PingSimulator::band_of(const EchoContext& context, const Emission& emission,
@@ -199,10 +206,28 @@ double PingSimulator::peak_of(const Emission& emission, int array, std::span<con
   if (!across_the_band(context, emission.projector, echoes))
     return peak_of_echoes(emission.pulse, echoes,
                           recorded_pulse(emission.pulse, recording, max_doppler_));
+  // What lies apart is gridded apart: between echoes of one ping there may be minutes.
   const std::vector<Vec3> reference_point = {Vec3::Zero()};
-  return largest_envelope(wide_band_sound(context, emission.projector, echoes, reference_point,
-                                          around(recording, emission.pulse, echoes), max_doppler_),
-                          0);
+  const std::vector<std::pair<double, double>> times = times_of(emission.pulse, echoes);
+  double peak = 0.0;
+  for (const auto& [first, last] : times) {
+    std::vector<EchoPath> then;
+    std::copy_if(echoes.begin(), echoes.end(), std::back_inserter(then),
+                 [&, first = first, last = last](const EchoPath& echo) {
+                   const double begin = received_between(emission.pulse, echo).first;
+                   return begin >= first && begin <= last;
+                 });
+    Recording around = recording;  // its samples are those of one recording of all
+    around.start =
+        times.front().first +
+        std::floor((first - times.front().first) * around.sample_rate) / around.sample_rate;
+    around.samples =
+        static_cast<std::size_t>(std::ceil((last - around.start) * around.sample_rate)) + 1;
+    peak = std::max(peak, largest_envelope(wide_band_sound(context, emission.projector, then,
+                                                           reference_point, around, max_doppler_),
+                                           0));
+  }
+  return peak;
 }
 
 /// Of the targets whose pairs of paths are too many to be gridded one by one.

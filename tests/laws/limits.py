@@ -198,8 +198,14 @@ def equal_layers(s, p):
 
 @law
 def no_focus_in_isovelocity(s, p):
-    """In water of one speed and depth waves add nothing to images: diffraction on and off are the same."""
+    """In water of one speed between walls that reflect all angles alike waves add nothing to images: diffraction on and off
+    are the same. Off other walls waves are not reflected as plane waves are, and rays have no part in that."""
     s = stratified(plain(s))
+    e = s["environment"]
+    for name, kind in (("bottom", p("bottom", ["rigid", "vacuum"])), ("surface", "vacuum")):
+        wall = e.get(name, {"kind": "vacuum"})
+        kept = {k: v for k, v in wall.items() if k == "depth" or k.startswith(("roughness", "bubbles"))}
+        e[name] = {"kind": wall["kind"] if wall["kind"] in ("rigid", "vacuum") else kind} | kept
     s["environment"]["sound_speed"] = {"kind": "isovelocity", "speed": 1500.0}
     s["propagation"]["diffraction"] = True
     first = ping(s)
@@ -238,9 +244,12 @@ def legs_are_waves(s, p):
     """A leg's paths add up to the wave equation's field: 41 % of it over ten wavelengths of range, by which 3 dB of energy are off.
 
     Nine places along ten wavelengths, the coherent sum of paths at each, against `asdic field` by waves at the same
-    ones. Rays are stationary phase: right where depth is many wavelengths, so the water is twenty of them at least, and
-    where boundaries reflect plane waves in one place: both ends are a wavelength from them, and layers and tables that
-    change fast with the angle, so that beams come out elsewhere, are left out.
+    ones. Rays are stationary phase: right where depth is many wavelengths, so the water is twenty of them at least. Paths
+    that have the reflection of plane waves may be wrong by 12 % of the root of their energy before the run warns. Beside a
+    wall they cancel and these errors do not, so they are added. Tables that change fast with the angle are left out, since
+    waves need what they are at complex angles. Water takes 40 dB from what comes at the record's end, and 2 dB from what
+    comes first: near a mode's cut-off between walls without loss images add up for ever, and a record of any length holds
+    too few.
     """
     s = smooth(one_place(still(stratified(plain(s)))))  # what is scattered is the rays' alone
     e = s["environment"]
@@ -252,29 +261,27 @@ def legs_are_waves(s, p):
         for key in boundary:
             if key.endswith("per_metre"):  # the same loss per wavelength as at the drawn frequency
                 boundary[key] *= hz / s["_hz"]
-        if boundary.get("kind") == "layered":
-            del boundary["layer"]
-            boundary["kind"] = "elastic" if "shear_speed" in boundary else "fluid"
+        for layer in boundary.get("layer", ()):  # as many wavelengths thick as drawn
+            layer["thickness"] *= s["_hz"] / hz
         if boundary.get("kind") == "table":
             boundary |= {"magnitude": boundary["magnitude"][1:2] * 3, "phase_deg": [180.0] * 3}
     e.pop("spreading", None)  # other laws than the wave equation's
     e.pop("biology", None)  # losses with depth are left to rays
-    e.pop("attenuation", None)
     a, b = s["platform"][0]["position"], s["target"][0]["position"]
-    top = e.get("surface", {}).get("depth", 0.0)
-    for end in (a, b):
-        end[2] = min(max(end[2], top + wave), depth - wave)
     r = min(max(math.hypot(a[0] - b[0], a[1] - b[1]), depth), 15 * depth)
+    e["attenuation"] = {"db_per_km": 2000.0 / (r + depth)}
     s["propagation"] |= {"max_surface_bounces": "auto", "max_bottom_bounces": "auto"}
     # "auto" follows what arrives in the record: steep paths of ten times the way as well.
     s["pings"] = {"recording_duration": 20.0 * (r + depth) / 1500.0, "samples": "baseband"}
     ranges = [float(f"{r + (i - 4) * 10 * wave / 8:.8g}") for i in range(9)]
-    sums = []
+    b[:2] = [a[0], a[1] + r]
+    sums, energies = [], []
     with Folder(s) as folder:
         for x in ranges:
             said = json.loads(run(folder, "arrivals", "s.toml", "--receiver-depth", repr(b[2]), "--range", repr(x), "--json"))
             rows = said["legs"][0]["arrivals"]
             sums.append(sum((one["amplitude_real"] + 1j * one["amplitude_imag"]) * np.exp(-2j * np.pi * hz * one["delay"]) for one in rows))
+            energies.append(sum(one["amplitude_real"] ** 2 + one["amplitude_imag"] ** 2 for one in rows))
     f = {k: v for k, v in s.items() if k in ("environment", "_files")}
     f["run"] = {"task": "field", "field": "coherent", "solver": "waves", "frequency": hz, "source": {"depth": a[2]},
                 "receivers": {"depth": b[2], "range": ranges}}
@@ -285,5 +292,8 @@ def legs_are_waves(s, p):
             value = np.asarray(file[name][...])
     waves = (value[..., 0] + 1j * value[..., 1]).ravel()
     off = norm(np.array(sums) - waves) / norm(waves)
-    expect(off <= 0.41, f"paths {db(norm(sums) ** 2 / 9):.2f} dB, waves {db(norm(waves) ** 2 / 9):.2f} dB over ten wavelengths at {r:g} m, "
-           f"their difference {off:.2f} of the waves")
+    most = 0.41 + 0.12 * math.sqrt(sum(energies)) / norm(waves)
+    if off > most and warned(ping(s), "as plane waves are"):
+        raise Silent("warned")
+    expect(off <= most, f"paths {db(norm(sums) ** 2 / 9):.2f} dB, waves {db(norm(waves) ** 2 / 9):.2f} dB over ten wavelengths at {r:g} m, "
+           f"their difference {off:.2f} of the waves, at most {most:.2f}")

@@ -3,7 +3,7 @@ import math
 
 
 import program
-from law import Silent, alike, copied, expect, law, ping, plain, stratified
+from law import Silent, alike, copied, expect, law, ping, plain, smooth, stratified
 
 
 def table(s, interpolation, p):
@@ -53,8 +53,10 @@ def isovelocity_as_a_table(s, p):
 def section_of_equal_profiles(s, p):
     """A section of one profile repeated is that profile. Two solvers find the rays, delays to 1e-9 s, amplitudes to 1e-6
     (docs/theory/eigenrays.md, Evidence); waves are for the layered one alone, so without diffraction. Each finds out for
-    itself where a plane wave is enough for an array, so neither may."""
-    s = stratified(plain(s))
+    itself where a plane wave is enough for an array, so neither may. Where ends move the delay is told to 1e-7 s
+    (docs/theory/echoes.md) and the place of a bounce to sqrt(2rc·1e-7 s), half a metre at 1 km: the sea there is another
+    one, so nothing is scattered."""
+    s = smooth(stratified(plain(s)))
     s["propagation"] |= {"diffraction": False, "exact_per_phone": True}
     s["environment"]["sound_speed"] = table(s, "c-linear", p)
     first = ping(s)

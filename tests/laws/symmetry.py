@@ -182,40 +182,56 @@ def exact_is_plane(s, p):
     alike(plane, exact, s, 0.063 + 0.02 + size / max(reach, size, 1e-9), "exact_per_phone")
 
 
-@law
-def continuous_in_place(s, p):
-    """A target that moves by a hundredth of a wavelength, or a millimetre where that is less, changes little.
+def small_move(s, p):
+    """A sea for a small move, and its length: a thousandth of a wavelength, or a millimetre where that is less.
 
-    A path's phase turns by at most kd there and kd back, 2·0.063·(1500/1400); its amplitude changes by 2d/r and, beside
-    a caustic, over (λ²ρ)^(1/3) ≫ λ. Waves leave up to 1 % of each leg to rays (0.02). Water is stratified: over slopes
-    and fronts rays end, and a run says so.
+    Every other sea has one speed of sound: there no caustic is near, and nothing is left to waves. The sound of the ping
+    itself, which is louder than echoes, is left out.
     """
     s = one_place(stratified(still(plain(s))))
+    s["propagation"]["direct_blast"] = False
+    if p("sea", ["isovelocity", "drawn"]) == "isovelocity":
+        s["environment"]["sound_speed"] = {"kind": "isovelocity", "speed": 1500.0}
+    return s, min(1e-3 * 1500.0 / s["_hz"], p("step", [1e-3, 1.0, 1e-7]))
+
+
+def bends(s):
+    return s["environment"]["sound_speed"]["kind"] != "isovelocity"
+
+
+@law
+def continuous_in_place(s, p):
+    """A target that moves by a thousandth of a wavelength, or a millimetre where that is less, changes little.
+
+    A path's phase turns by at most kd there and kd back, 2·0.0063·(1500/1400); its amplitude changes by 2d/r and, beside
+    a caustic, over (λ²ρ)^(1/3) ≫ λ. Waves leave up to 1 % of each leg to rays (0.02), and at a critical angle a bounce
+    changes as the root of the angle: by sqrt(2d/3λ), 0.026. Water is stratified: over slopes and fronts rays end, and a
+    run says so.
+    """
+    s, d = small_move(s, p)
     first = ping(s)
     wave = 1500.0 / s["_hz"]
-    d = min(0.01 * wave, p("step", [1e-3, 1.0, 1e-7]))
     axis = p("axis", [2, 0, 1])
     s2 = copied(s)
     z = s2["target"][0]["position"]
     z[axis] += d if axis < 2 or z[2] > s["platform"][0]["position"][2] else -d
     second = ping(s2)
-    if warned(first, "waves", "caustic") or warned(second, "waves", "caustic"):
+    if bends(s) and (warned(first, "waves", "caustic") or warned(second, "waves", "caustic")):
         raise Silent("warned")
-    share = 2 * 2 * math.pi * d / wave * 1.07 + 2 * d / max(3 * wave, 1.0) + 0.02
+    share = 2 * 2 * math.pi * d / wave * 1.07 + 2 * d / max(3 * wave, 1.0) + 0.02 + 0.026
     alike(first, second, s, share, f"target moved by {d:g} m")
 
 
 @law
 def continuous_in_source(s, p):
     """As `continuous_in_place`, of the platform's depth: the legs' sums at the centre frequency."""
-    s = one_place(stratified(still(plain(s))))
+    s, d = small_move(s, p)
     first = need_leg(ping(s))
-    d = min(0.01 * 1500.0 / s["_hz"], p("step", [1e-3, 1.0, 1e-7]))
     s2 = copied(s)
     s2["platform"][0]["position"][2] += d if s2["platform"][0]["position"][2] < s2["target"][0]["position"][2] else -d
     record = ping(s2)
-    if warned(record, "waves", "caustic"):
+    if bends(s) and warned(record, "waves", "caustic"):
         raise Silent("warned")
     (a, total), (b, _) = field(first, s["_hz"]), field(need_leg(record), s["_hz"])
-    share = 2 * math.pi * d * s["_hz"] / 1500.0 * 1.07 + 0.03
+    share = 2 * math.pi * d * s["_hz"] / 1500.0 * 1.07 + 0.02 + 0.026
     expect(abs(a - b) <= share * total, f"source moved by {d:g} m: the leg changes by {abs(a - b) / total:.2e} of all paths, at most {share:.1e}")

@@ -99,5 +99,33 @@ TEST(LowFrequencyShadow, IsTheWavesOnEitherSideOfItsEdge) {
   }
 }
 
+/// Waves in water that is fastest at 1000 m, below which it goes on level. \param bottom  depth [m]
+Complex above_a_bottom(double bottom, const BoundaryMaterial& material, double receiver) {
+  const std::vector<double> depths{0.0, 1000.0, 1500.0}, speeds{1500.0, 1530.0, 1530.0};
+  Environment ocean{.water = SoundSpeedProfile::table(depths, speeds, Interpolation::c_linear)};
+  ocean.bottom = {.depth = bottom, .material = material};
+  const auto wave = diffracted_arrival(ocean, 50.0, receiver, 10500.0, 50.0);
+  return wave ? support::sum_of({*wave}, 50.0) : Complex(0.0);
+}
+
+// What the limiting ray carries to a receiver a tenth of a wavelength above the bottom: the field
+// there and that of the mirrored place, where the water goes on below. Vertical wavenumbers are
+// some 0.01/m: (2·3 m·0.01/m)² = 0.004 is left out by taking the field for an exponential, and
+// 0.002 by the share of the bottom, which is 0.998.
+TEST(LowFrequencyShadow, IsReflectedByTheBottomCloseBelow) {
+  constexpr double bottom = 1000.0;
+  for (const double height : {0.3, 1.0, 3.0}) {
+    const Complex above = above_a_bottom(1500.0, Vacuum{}, bottom - height),
+                  below = above_a_bottom(1500.0, Vacuum{}, bottom + height);
+    ASSERT_GT(std::abs(above), 0.0);
+    EXPECT_LT(std::abs(above_a_bottom(bottom, Vacuum{}, bottom - height) - (above - below)),
+              0.01 * std::abs(above))
+        << height;
+    EXPECT_LT(std::abs(above_a_bottom(bottom, Rigid{}, bottom - height) - (above + below)),
+              0.01 * std::abs(above))
+        << height;
+  }
+}
+
 }  // namespace
 }  // namespace asdic::detail

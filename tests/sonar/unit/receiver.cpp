@@ -495,5 +495,34 @@ TEST(ExactPerPhone, ReceivesEveryPhonesOwnPath) {
   }
 }
 
+// A phone receives by its own paths what it receives as the only one: the echo and the direct sound
+// with what a rough sea scatters about them, which comes from other directions than its path does.
+// Synthesis is linear up to rounding, 1e-6 of the peak.
+TEST(ExactPerPhone, ReceivesWhatIsScatteredAsAPhoneAlone) {
+  Scenario s = two_platforms();
+  s.environment.bottom.depth = 200.0;
+  s.environment.surface.roughness.rms_height = 0.5;
+  s.propagation.max_surface_bounces = 1;
+  s.propagation.exact_per_phone = true;
+  s.targets = {{.name = "target", .track = {.start = {.position = {300.0, 900.0, 60.0}}}}};
+  s.platforms[1].track.start.position = {150.0, 200.0, 100.0};
+  s.arrays[0].phones = {{-20.0, 0.0, 0.0}, {20.0, 10.0, 0.0}};
+  const std::vector<float> both = PingSimulator(s).sound(1).pressure;
+  const std::size_t n = both.size() / 2;
+  for (std::size_t phone : {0U, 1U}) {
+    Scenario alone = s;
+    alone.arrays[0].phones = {s.arrays[0].phones[phone]};
+    const std::vector<float> own = PingSimulator(alone).sound(1).pressure;
+    ASSERT_EQ(own.size(), n);
+    double off = 0.0, peak = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+      off = std::max(off, std::abs(double(both[phone * n + i]) - double(own[i])));
+      peak = std::max(peak, std::abs(double(own[i])));
+    }
+    EXPECT_GT(peak, 0.0);
+    EXPECT_LT(off, 1e-5 * peak) << phone;
+  }
+}
+
 }  // namespace
 }  // namespace asdic::detail

@@ -156,6 +156,22 @@ TEST(Targets, AreReceivedTogetherAsAlone) {
   EXPECT_NE(target_identity(s, 0), target_identity(s, 1));
 }
 
+// The loudest of an echo across the band is that of its direct paths, whatever is received seconds
+// later off a floor 5 km down. 1e-4 dB is the rounding of samples in single precision.
+TEST(Summary, PeakAcrossTheBandIsThatOfTheLoudestPaths) {
+  Scenario s = support::two_platforms();
+  s.arrays[0].platform = 0;
+  s.propagation.direct_blast = false;
+  s.propagation.band = BandOfLosses::wide;
+  s.targets = {{.name = "target", .track = {.start = {.position = {0.0, 700.0, 60.0}}}}};
+  s.pings.recording_duration = 1.5;
+  const auto peak_db = [&](int bottom_bounces) {
+    s.propagation.max_bottom_bounces = bottom_bounces;
+    return PingSimulator(s).simulate(1).summary.at(0).echo_peak_db;
+  };
+  EXPECT_NEAR(peak_db(1), peak_db(0), 1e-4);
+}
+
 /// What comes back of the first target.
 TargetEchoes received(const Scenario& s) {
   const PropagationPaths paths(s.environment, s.transect);
