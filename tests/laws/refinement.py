@@ -105,8 +105,8 @@ def finer_floor(s, p):
 
 @law
 def flat_shape(s, p):
-    """A floor of one depth told by a shape is flat. Two solvers, as `section_of_equal_profiles`."""
-    s = stratified(plain(s))
+    """A floor of one depth told by a shape is flat. Two solvers, without scattering, as `section_of_equal_profiles`."""
+    s = smooth(stratified(plain(s)))
     s["propagation"] |= {"diffraction": False, "exact_per_phone": True}
     first = ping(s)
     s2 = copied(s)
