@@ -80,25 +80,16 @@ class FloorTracer {
   FloorTracer(const Area& area, const Vec2& place, double bearing)
       : area_(area), place_(place), way_(std::sin(bearing), std::cos(bearing)) {}
 
-  /// Of a bicubic floor. Nodes lie at multiples of a step from where the plane passes the map's
-  /// [0, 0] nearest, in whole blocks of steps: the way back has the same ones, and they stay where
-  /// they are as its ends move along it. \param step  of the grid, at the map's [0, 0] [m]
+  /// Of a bicubic floor. \param step  of the grid [m]
   std::vector<FloorSample> smooth(double step, double reach) {
-    const double along = place_.dot(way_);  // of the place, from there
-    const double block = double(longest) * step;
-    double begin = (std::floor(along / step) - double(behind)) * step - along,
-           end = (std::ceil((along + reach) / step) + 1.0) * step - along;
-    const double earlier = std::floor((along + begin) / block) * block - along,
-                 later = std::ceil((along + end) / block) * block - along;
-    if (has_no_hole(earlier, begin)) begin = earlier;
-    if (has_no_hole(end, later)) end = later;
+    const auto steps = static_cast<std::size_t>(std::ceil(reach / step)) + 1;
     samples_.clear();
-    const double first = std::round((along + begin) / step);
-    const auto steps = static_cast<std::size_t>(std::lround((end - begin) / step));
-    for (std::size_t i = 0; i <= steps; ++i)
-      samples_.push_back(at((first + double(i)) * step - along));
+    for (std::size_t i = 0; i <= steps + behind; ++i)
+      samples_.push_back(at((double(i) - double(behind)) * step));
     nodes_ = {samples_.front()};
-    for (std::size_t i = 0; i < steps; i += longest) span(i, std::min(i + longest, steps));
+    constexpr std::size_t longest = 32;
+    for (std::size_t i = 0; i + 1 < samples_.size(); i += longest)
+      span(i, std::min(i + longest, samples_.size() - 1));
     return nodes_;
   }
 
@@ -122,14 +113,7 @@ class FloorTracer {
   }
 
  private:
-  static constexpr std::size_t behind = 2;   // steps before the plane's place
-  static constexpr std::size_t longest = 8;  // number of steps between nodes
-
-  /// Whether the map has a value everywhere between two ranges.
-  [[nodiscard]] bool has_no_hole(double from, double to) const {
-    const Vec2 a = place_ + from * way_, b = place_ + to * way_;
-    return area_.floor().least_within(a.cwiseMin(b), a.cwiseMax(b)) > -infinity;
-  }
+  static constexpr std::size_t behind = 2;  // steps before the plane's place
 
   [[nodiscard]] FloorSample at(double r) const {
     const double x = place_.x() + r * way_.x(), y = place_.y() + r * way_.y();
@@ -256,7 +240,7 @@ class FloorTracer {
 Boundary Area::floor_along(const Vec2& place, double bearing, double reach) const {
   FloorTracer tracer(*this, place, bearing);
   const bool smooth = maps_.floor.interpolation() == MapInterpolation::bicubic;
-  double step = spacing(smooth ? Vec2::Zero() : place);
+  double step = spacing(place);
   if (maps_.seabed) step = std::min(step, maps_.seabed->spacing(place.x(), place.y()));
   const std::vector<FloorSample> nodes =
       smooth ? tracer.smooth(step, reach) : tracer.faceted(step, reach);

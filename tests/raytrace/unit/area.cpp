@@ -177,22 +177,6 @@ TEST(AreaSection, FollowsABicubicMap) {
   }
 }
 
-// Sound that goes there and back meets one floor, whatever of the map is left out between nodes.
-// Places are rounded to 1e-12 m on either way; 4e-10 m leaves room for some hundred roundings.
-TEST(AreaSection, AWayAndItsReverseHaveOneFloor) {
-  const auto ripples = [](double x, double y) {
-    return 50.0 + std::sin(x / 61.0) * std::cos(y / 43.0) + hill(x, y) / 100.0;
-  };
-  const Area area({.floor = floor_of(5e3, 100.0, ripples)}, sandy());
-  const Vec2 a(-1503.0, 311.0), b(2411.0, 1207.0);
-  const Vec2 way = b - a;
-  const double length = way.norm(), bearing = std::atan2(way.x(), way.y());
-  const Environment there = area.section(a, bearing, length + 500.0),
-                    back = area.section(b, bearing + pi, length + 500.0);
-  for (double r = 0.0; r < length; r += 7.0)
-    EXPECT_NEAR(there.bottom.depth_at(r), back.bottom.depth_at(length - r), 4e-10) << r;
-}
-
 TEST(AreaSection, FollowsAFacetedMapExactly) {
   const Area area({.floor = floor_of(20e3, 250.0, hill, MapInterpolation::faceted)}, sandy());
   const Vec2 place(-1503.0, 311.0);
