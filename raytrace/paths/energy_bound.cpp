@@ -49,16 +49,13 @@ double steepest_sine2(const Environment& ocean) noexcept {
                (!std::isnan(intensity(a)) && std::isnan(intensity(b)));
       });
   const double d2 = squared_distance(ends), sum = intensity(paths);
-  char text[640];
+  char text[512];
   std::snprintf(
       text, sizeof text,
-      "a path louder than energy allows, %s: %.6g Hz, %.6g m at "
+      "a path louder than energy allows, which is a fault of this program: %.6g Hz, %.6g m at "
       "depths of %.6g and %.6g m, all %zu paths together %.1f dB over spherical spreading, at most "
       "%.1f dB are possible; the loudest, launched at %.4g deg with %d surface and %d bottom "
       "bounces after %.6g s, has %.1f dB, and %.1f dB scattered, re 1 m",
-      ends.rays_alone ? "because a ray alone has no bound at a caustic; with "
-                        "propagation.diffraction = true waves replace it there"
-                      : "which is a fault of this program",
       ends.frequency, ends.range, ends.source_depth, ends.receiver_depth, paths.size(),
       db_from_power(sum * d2), db_from_power(most_intensity(ocean, ends) * d2),
       degrees(loudest->launch_elevation), loudest->surface_bounces, loudest->bottom_bounces,

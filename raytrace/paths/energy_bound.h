@@ -10,7 +10,6 @@ struct LegEnds {
   double frequency;                            ///< [Hz]
   bool layered = true;                         ///< is_layered()
   bool in_volume = false;                      ///< rays may be focused across vertical planes, too
-  bool rays_alone = false;                     ///< no waves replace rays at caustics
 };
 
 /// Upper bound of the intensity Σ(|A|² + scattered) of all paths of one leg, relative to 1 m from
@@ -29,8 +28,7 @@ struct LegEnds {
 [[nodiscard]] double excess(const Arrivals& paths, const Environment& ocean, const LegEnds& ends);
 
 /// Checks that the paths of a leg are together no louder than most_intensity().
-/// \throws RunError  naming the loudest path, the leg, the level and the bound, and for rays alone
-/// the setting that replaces them
+/// \throws RunError  naming the loudest path, the leg, the level and the bound
 void ensure_bounded(const Arrivals& paths, const Environment& ocean, const LegEnds& ends);
 
 }  // namespace asdic::detail

@@ -213,14 +213,15 @@ Arrivals PropagationPaths::search(const Vec3& from, const Vec3& to, double frequ
 
 Arrivals PropagationPaths::bounded(Arrivals found, const Vec3& from, const Vec3& to,
                                    double frequency, const PathLimits& limits) const {
+  // Rays alone have no bound at a caustic. Where diffraction is on, waves replace them there.
+  if (layered_ && !limits.diffraction) return found;
   ensure_bounded(found, along_.environment(),
                  {.source_depth = from.z(),
                   .receiver_depth = to.z(),
                   .range = separation(from, to).range,
                   .frequency = frequency,
                   .layered = layered_,
-                  .in_volume = volume() != nullptr,
-                  .rays_alone = layered_ && !limits.diffraction});
+                  .in_volume = volume() != nullptr});
   return found;
 }
 

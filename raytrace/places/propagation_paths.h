@@ -105,7 +105,8 @@ class PropagationPaths {
   /// The solver of a layered ocean, and that of the same ocean without roughness.
   [[nodiscard]] std::shared_ptr<const EigenraySolver> layered_solver() const;
   [[nodiscard]] std::shared_ptr<const EigenraySolver> between_mirrors() const;
-  /// Returns the paths after ensure_bounded() has checked them.
+  /// Returns the paths after ensure_bounded() has checked them; rays alone in layered oceans are
+  /// not checked.
   [[nodiscard]] Arrivals bounded(Arrivals found, const Vec3& from, const Vec3& to, double frequency,
                                  const PathLimits& limits) const;
   [[nodiscard]] ExactKey leg_key(Kept kind, const Vec3& from, const Vec3& to, double frequency,
