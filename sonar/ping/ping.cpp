@@ -15,6 +15,7 @@
 #include "reverb/power/reverberation_streams.h"
 #include "sonar/echoes/direct_blast.h"
 #include "sonar/echoes/echo.h"
+#include "sonar/echoes/leg_response.h"
 #include "sonar/echoes/peak_of_echoes.h"
 #include "sonar/echoes/sparse_sound.h"
 #include "sonar/echoes/two_step_echo.h"
@@ -174,12 +175,19 @@ static std::pair<double, double> received_between(const Pulse& pulse, const Echo
   return {received.delay, received.delay + pulse.duration() / received.doppler};
 }
 
-/// Times in which echoes are received, with nothing for as long as a pulse between them: first and
-/// last [s], in order.
+/// Times in which echoes are received, delayed by reflections, with nothing for as long as a pulse
+/// between them: first and last [s], in order.
 static std::vector<std::pair<double, double>> times_of(const Pulse& pulse,
                                                        std::span<const EchoPath> echoes) {
   std::vector<std::pair<double, double>> each, together;
-  for (const EchoPath& echo : echoes) each.push_back(received_between(pulse, echo));
+  double end = -infinity;
+  for (const EchoPath& echo : echoes) {
+    each.push_back(received_between(pulse, echo));
+    end = std::max(end, each.back().second);
+  }
+  // A response that is sampled over the band delays sound by that much at most.
+  const double delayed = 32.0 / response_half_band(pulse);
+  for (auto& [first, last] : each) last = std::min(last + delayed, end);
   std::sort(each.begin(), each.end());
   for (const auto& [first, last] : each) {
     if (together.empty() || first > together.back().second + pulse.duration())
