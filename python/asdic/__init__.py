@@ -40,5 +40,5 @@ def __getattr__(name: str):
 
 __all__ = ["Arrivals", "AsdicWarning", "Channel", "InputError", "Measure", "Ocean", "Processed",
            "RunError", "Scenario", "Stopped", "StudyResult", "area", "as_complex", "as_pairs",
-           "bellhop", "build", "group", "ocean", "page", "place", "process",
+           "bellhop", "build", "group", "ocean", "open", "page", "place", "process",
            "read_study", "settings", "study", "to_parquet", "version"]
