@@ -124,7 +124,7 @@ class ArrivalSearch {
     notes.emplace_back(text);
   }
 
-  /// Where rays are louder than energy allows.
+  /// Notes the number of receivers at which rays are louder than energy allows.
   void tell_of_caustics(double depth, const std::vector<Arrivals>& found,
                         std::vector<std::string>& notes) const {
     std::size_t loud = 0;

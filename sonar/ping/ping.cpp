@@ -214,7 +214,7 @@ double PingSimulator::peak_of(const Emission& emission, int array, std::span<con
   if (!across_the_band(context, emission.projector, echoes))
     return peak_of_echoes(emission.pulse, echoes,
                           recorded_pulse(emission.pulse, recording, max_doppler_));
-  // What lies apart is gridded apart: between echoes of one ping there may be minutes.
+  // Groups are gridded one by one, because there may be minutes between echoes of one ping.
   const std::vector<Vec3> reference_point = {Vec3::Zero()};
   const std::vector<std::pair<double, double>> times = times_of(emission.pulse, echoes);
   double peak = 0.0;

@@ -108,9 +108,9 @@ Complex above_a_bottom(double bottom, const BoundaryMaterial& material, double r
   return wave ? support::sum_of({*wave}, 50.0) : Complex(0.0);
 }
 
-// What the limiting ray carries to a receiver a tenth of a wavelength above the bottom: the field
-// there and that of the mirrored place, where the water goes on below. Vertical wavenumbers are
-// some 0.01/m: (2·3 m·0.01/m)² = 0.004 is left out by taking the field for an exponential, and
+// Sound that the limiting ray carries to a receiver a tenth of a wavelength above the bottom: the
+// field there and that of the mirrored place, where the water goes on below. Vertical wavenumbers
+// are some 0.01/m: (2·3 m·0.01/m)² = 0.004 is left out by taking the field for an exponential, and
 // 0.002 by the share of the bottom, which is 0.998.
 TEST(LowFrequencyShadow, IsReflectedByTheBottomCloseBelow) {
   constexpr double bottom = 1000.0;
