@@ -103,8 +103,8 @@ double wavenumber(Complex p, Complex slope) {
 /// p(z) + R·p(2D − z) over p(z), with p exponential on so short a way, as it was without the
 /// bottom. It is 1 where the end is too high for the two to be one arrival. \param slope  ∂p/∂z of
 /// the end
-Complex beside_bottom(const Environment& ocean, double depth, double slowness, double frequency,
-                      Complex p, Complex slope) {
+Complex share_beside_bottom(const Environment& ocean, double depth, double slowness,
+                            double frequency, Complex p, Complex slope) {
   constexpr double steepest = 0.07;  // of waves that stay in the water, 4° [rad]
   const double bottom = ocean.bottom.depth, height = bottom - depth, c = ocean.water.at(bottom).c;
   const Complex change = 2.0 * height * slope / p;
@@ -116,6 +116,15 @@ Complex beside_bottom(const Environment& ocean, double depth, double slowness, d
       ocean.bottom.material, std::acos(std::clamp(slowness * c, 0.0, 1.0)),
       {.speed = c, .density = ocean.water_density.at(bottom), .frequency = frequency});
   return 1.0 + near * reflected * std::exp(change);
+}
+
+/// Pressure of a wave with what the bottom close below its ends sends back.
+Complex beside_bottom(const Environment& ocean, double source_depth, double receiver_depth,
+                      double frequency, const WaveAt& wave) {
+  const double slowness = wavenumber(wave.p, wave.along) / (2.0 * pi * frequency);
+  return wave.p *
+         share_beside_bottom(ocean, source_depth, slowness, frequency, wave.p, wave.by_source) *
+         share_beside_bottom(ocean, receiver_depth, slowness, frequency, wave.p, wave.by_receiver);
 }
 
 /// \param least  amplitude below which there is nothing
@@ -133,9 +142,7 @@ std::optional<Arrival> louder_arrival(const Environment& ocean, double source_de
   if (!found) return std::nullopt;
   const WaveAt& wave = found->wave;
   const double slowness = wavenumber(wave.p, wave.along) / (2.0 * pi * frequency);
-  const Complex p =
-      wave.p * beside_bottom(ocean, source_depth, slowness, frequency, wave.p, wave.by_source) *
-      beside_bottom(ocean, receiver_depth, slowness, frequency, wave.p, wave.by_receiver);
+  const Complex p = beside_bottom(ocean, source_depth, receiver_depth, frequency, wave);
 
   Arrival path;
   path.kind = ArrivalKind::diffracted;
@@ -155,6 +162,48 @@ std::optional<Arrival> louder_arrival(const Environment& ocean, double source_de
 }
 
 }  // namespace
+
+std::optional<double> pressure_beside_surface_rays(const Environment& ocean, double source_depth,
+                                                   double receiver_depth, double range,
+                                                   double frequency, const Arrivals& rays) {
+  Arrivals in_the_water;
+  for (const Arrival& ray : rays)
+    if (ray.bottom_bounces == 0) in_the_water.push_back(ray);
+  const auto off_the_surface = [](const Arrival& ray) { return ray.surface_bounces == 1; };
+  if (in_the_water.empty() || !std::ranges::all_of(in_the_water, off_the_surface) ||
+      !diffraction_is_affordable(ocean, range, frequency))
+    return std::nullopt;
+  PropagationMemory memory(own_bytes);
+  const OceanMemory kept{memory};
+  const WaterborneWaves waves(ocean,
+                              {.frequency = frequency,
+                               .cut_for = finer_layers * frequency,
+                               .upper = std::min(source_depth, receiver_depth),
+                               .lower = std::max(source_depth, receiver_depth),
+                               .furthest = furthest_in_step(range)},
+                              kept);
+  WaveAt wave = waves.at(range, source_depth <= receiver_depth);
+  for (const Arrival& ray : in_the_water) {
+    const double omega = 2.0 * pi * frequency, xi = omega * ray.horizontal_slowness;
+    const auto vertical = [&](double depth, double elevation) {
+      return omega / ocean.water.at(depth).c * std::sin(elevation);
+    };
+    const Complex p = waves.weight(xi) * ray.amplitude *
+                      std::polar(1.0, -2.0 * pi * std::fmod(frequency * ray.delay, 1.0));
+    wave.p -= p;
+    wave.along += Complex(0.0, xi) * p;
+    wave.by_source += Complex(0.0, vertical(source_depth, ray.launch_elevation)) * p;
+    wave.by_receiver -= Complex(0.0, vertical(receiver_depth, ray.arrival_elevation)) * p;
+  }
+  // A plane wave that grazes is sent back with −1; waves about it, a Fresnel zone off, are not.
+  const double zone = std::sqrt(ocean.water.at(source_depth).c / (pi * frequency * range)),
+               slowness = std::cos(zone) / ocean.water.at(ocean.bottom.depth).c;
+  const double beside = std::abs(
+      share_beside_bottom(ocean, source_depth, slowness, frequency, wave.p, wave.by_source) *
+      share_beside_bottom(ocean, receiver_depth, slowness, frequency, wave.p, wave.by_receiver));
+  return std::max(beside * std::abs(wave.p),
+                  std::abs(beside_bottom(ocean, source_depth, receiver_depth, frequency, wave)));
+}
 
 bool diffraction_is_affordable(const Environment& ocean, double range, double frequency,
                                const OceanMemory* kept) {

@@ -31,6 +31,16 @@ namespace asdic::detail {
                                                         double range, double frequency,
                                                         const OceanMemory* kept = nullptr);
 
+/// About the pressure that waves without the bottom have at a place where the direct ray is in its
+/// shadow, so that rays arrive off the surface alone, less these rays [1/m × 1 m]. It has no
+/// arrival, because the errors of those rays are in it as well. Nothing where another ray arrives
+/// without the bottom, and where it would be too dear. \param rays  of the leg
+[[nodiscard]] std::optional<double> pressure_beside_surface_rays(const Environment& ocean,
+                                                                 double source_depth,
+                                                                 double receiver_depth,
+                                                                 double range, double frequency,
+                                                                 const Arrivals& rays);
+
 /// Whether it is computed at all, or too dear. \param range  [m]
 [[nodiscard]] bool diffraction_is_affordable(const Environment& ocean, double range,
                                              double frequency, const OceanMemory* kept = nullptr);

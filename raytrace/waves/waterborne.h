@@ -61,6 +61,8 @@ class WaterborneWaves {
 
   /// \param range  up to the furthest [m]   \param source_is_upper  which end ∂p/∂z is told of as
   [[nodiscard]] WaveAt at(double range, bool source_is_upper) const noexcept;
+  /// Share that a wavenumber has in it: 1, less towards the edges of its window. \param s  [1/m]
+  [[nodiscard]] double weight(double s) const noexcept { return window_.weight(s); }
   [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:

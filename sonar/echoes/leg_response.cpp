@@ -173,7 +173,8 @@ bool changes_with_frequency(const PropagationPaths& paths, const MetLeg& leg) {
 
 std::vector<std::complex<double>> amplitudes_at(const PropagationPaths& paths, const MetLeg& leg,
                                                 double frequency) {
-  const double f = std::max(1.0, frequency);
+  constexpr double lowest = 0.1;  // of the centre: a band's edge may reach to 0 Hz and below
+  const double f = std::max(lowest * leg.frequency, frequency);
   std::vector<std::complex<double>> amplitudes;
   if (!leg.by_waves()) {
     const auto solver = solver_of(paths, leg);

@@ -26,6 +26,7 @@ struct AcrossThePulse {
   double error = 0.0;       ///< error of the interpolation, over the largest value
   double corners = 0.0;     ///< share of the leg's energy, of turned_at_corners()
   double caustics = 0.0;    ///< the same, of unsure_amplitudes()
+  double direct = 0.0;      ///< pressure beside_surface_rays(), over the leg's amplitude
   double reflection = 0.0;  ///< error of plane-wave reflection, over the leg's amplitude
 };
 
@@ -151,6 +152,27 @@ double reflection_error(const Environment& ocean, double source_depth, double fr
   return all > 0.0 ? std::sqrt(off / all) : 0.0;
 }
 
+/// Pressure of direct sound in its shadow where rays arrive off the surface, over the amplitude of
+/// the leg.
+double beside_surface_rays(const Environment& ocean, double source_depth, double receiver_depth,
+                           double range, double frequency, const Arrivals& paths) {
+  const auto direct =
+      pressure_beside_surface_rays(ocean, source_depth, receiver_depth, range, frequency, paths);
+  double energy = 0.0;
+  for (const Arrival& path : paths) energy += std::norm(path.amplitude);
+  return direct && energy > 0.0 ? *direct / std::sqrt(energy) : 0.0;
+}
+
+std::string line_of_direct(double share, const std::string& whose) {
+  constexpr double tolerable_share = 0.25;  // 2 dB
+  if (!(share > tolerable_share)) return "";
+  return formatted(
+      "propagation: no direct ray goes to or from %s, only rays off the boundaries; the direct "
+      "sound that waves carry there is left out, roughly %.1g times the pressure of "
+      "these rays",
+      whose.c_str(), share);
+}
+
 std::string line_of_reflection(double error, const std::string& whose) {
   constexpr double tolerable_error = 0.12;  // 1 dB
   if (!(error > tolerable_error)) return "";
@@ -259,6 +281,7 @@ std::vector<std::string> wave_warnings(const PingGeometry& geometry, const Propa
     const Environment& ocean = paths.along_transect().environment();
     across.corners = turned_at_corners(ocean, arrivals, centre);
     across.reflection = reflection;
+    across.direct = beside_surface_rays(ocean, from.z(), to.z(), way.range, centre, arrivals);
     return across;
   };
   std::vector<std::string> found;
@@ -271,6 +294,7 @@ std::vector<std::string> wave_warnings(const PingGeometry& geometry, const Propa
     add_warnings({line_of(there, name), line_of(home, name),
                   line_of_share(std::max(there.corners, home.corners), name, beside_corners),
                   line_of_share(std::max(there.caustics, home.caustics), name, at_caustics),
+                  line_of_direct(std::max(there.direct, home.direct), name),
                   line_of_reflection(std::max(there.reflection, home.reflection), name)},
                  found);
   }

@@ -254,6 +254,22 @@ TEST(Diffraction, ReverberationOfDarkGroundIsWarnedOf) {
   EXPECT_THAT(told(s), testing::Not(dark));
 }
 
+// Source and target at the depth of most speed, 90 wavelengths apart: rays part there, so the
+// direct sound, which the wave equation has 6 dB above the rays off surface and bottom, has no ray.
+TEST(Diffraction, DirectSoundThatRaysOffTheSurfaceHideIsWarnedOf) {
+  Scenario s = under_the_layer(236.0);
+  const std::vector<double> depth = {0.0, 63.55, 127.1}, speed = {1495.0, 1495.41, 1494.271};
+  s.environment.water = SoundSpeedProfile::table(depth, speed, Interpolation::c_linear);
+  s.environment.bottom = {.depth = 127.1, .material = FluidHalfSpace{.speed = 1600.0}};
+  s.platforms[0].track.start.position.z() = 63.551;
+  s.targets[0].track.start.position = {524.3, 0.0, 63.55};
+  const auto told = [](const Scenario& of) { return PingSimulator(of).judge_paths().warnings; };
+  const auto hidden = testing::Contains(testing::HasSubstr("no direct ray goes to or from"));
+  EXPECT_THAT(told(s), hidden);
+  s.targets[0].track.start.position.z() = 40.0;
+  EXPECT_THAT(told(s), testing::Not(hidden));
+}
+
 // What is left out is told before anything runs.
 TEST(Diffraction, WhatIsLeftOutIsWarnedOf) {
   Scenario s = under_the_layer(500.0);
