@@ -85,12 +85,16 @@ def narrow_is_wide(s, p):
 
 @law
 def rest_limit(s, p):
-    """A speed of a nanometre a second is none. Doppler shifts are 1e-12; phases change by k·v·t = 1e-6·f/1e6."""
+    """A speed of a nanometre a second is none. Doppler shifts are 1e-12; phases change by k·v·t = 1e-6·f/1e6.
+
+    What is towed follows astern of any course, so the speed is along the heading that the array has at rest.
+    """
     s = still(plain(s))
     first = ping(s)
     s2 = copied(s)
     who = p("who", ["target", "platform"])
-    s2[who][0]["velocity"] = [1e-9, 1e-9, 0.0]
+    course = math.radians(s["array"][0].get("heading_deg", 45.0))
+    s2[who][0]["velocity"] = [1e-9 * math.sin(course), 1e-9 * math.cos(course), 0.0]
     alike(first, ping(s2), s, 1e-3, f"{who} at 1e-9 m/s")
 
 

@@ -16,6 +16,7 @@ import json
 import os
 import random
 import re
+import signal
 import sys
 import time
 import tomllib
@@ -150,7 +151,7 @@ def written(law, s, values, text, origin):
     more = {"law": law, "hz": s["_hz"], "span": s["_span"], "with": values}
     if s.get("_files"):
         more["files"] = s["_files"]
-    return f"# {origin}\n# seen: {text}\n#: {json.dumps(more)}\n" + program.toml(s)
+    return f"# {origin}\n# seen: {' '.join(text.split())}\n#: {json.dumps(more)}\n" + program.toml(s)
 
 
 def read(path):
@@ -218,10 +219,20 @@ def work(options, job):
                 break
 
 
+def until_stopped(draws):
+    """The draws until SIGTERM comes: what has been counted by then is told."""
+    stopped = []
+    signal.signal(signal.SIGTERM, lambda *_: stopped.append(True))
+    for one in draws:
+        yield one
+        if stopped:
+            return
+
+
 def report(options, job, out):
     counts = collections.defaultdict(collections.Counter)
     levels, began = scenarios.factors(), spent()
-    for law, outcome, text, s, values, row, seed in work(options, job):
+    for law, outcome, text, s, values, row, seed in until_stopped(work(options, job)):
         counts[law][outcome] += 1
         counts["_"]["seconds"] = spent() - began
         if outcome == "violated":
