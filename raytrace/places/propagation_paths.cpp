@@ -1,6 +1,7 @@
 #include "raytrace/places/propagation_paths.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <optional>
@@ -82,12 +83,83 @@ PathLimits limits_around(std::span<const Arrival> known, PathLimits limits) {
 /// Gives a ray that was followed the amplitude of waves that it had, where that has hardly changed:
 /// two wavelengths further it has by some per cent. \return false: it must be found anew
 bool keeps_amplitude(const Arrival& known, Arrival& followed, double frequency) {
-  constexpr double periods = 2.0;
+  constexpr double periods = 0.25;
   if (!(std::abs(followed.delay - known.delay) * frequency < periods)) return false;
   followed.kind = known.kind;
   followed.amplitude = known.amplitude;
   followed.spreading = known.spreading;
   followed.scattered = known.scattered;
+  return true;
+}
+
+/// The same ray of another range; null if there is none.
+const Arrival* same_ray(const Arrivals& leg, const Arrival& ray) {
+  const Arrival* nearest = nullptr;
+  const auto off = [&](const Arrival& other) {
+    return std::abs(other.horizontal_slowness - ray.horizontal_slowness);
+  };
+  for (const Arrival& other : leg)
+    if (other.kind != ArrivalKind::diffracted && same_history(other, ray) &&
+        other.caustics == ray.caustics &&
+        (other.launch_elevation < 0.0) == (ray.launch_elevation < 0.0) &&
+        (nearest == nullptr || off(other) < off(*nearest)))
+      nearest = &other;
+  return nearest;
+}
+
+/// Gives a ray of a layered ocean the amplitude that waves have between ranges of a grid, where
+/// legs are found once for all places nearby: by a cubic, or by a line where a family of rays
+/// begins. \param ray  none, on the dark side of its caustic: it is found between them as well
+/// \param known  the same elsewhere   \param leg_at  shared_ptr<const Arrivals>(range [m])
+/// \return false: it has to be found by itself
+template <class LegAt>
+bool put_from_grid(std::optional<Arrival>& ray, const Arrival& known, double range,
+                   double wavelength, const LegAt& leg_at) {
+  constexpr double wavelengths = 6.0;                    // between ranges of the grid
+  constexpr double nearest = 10.0;                       // of the grid's steps
+  constexpr double tolerable = 0.02, of_the_leg = 1e-3;  // what the cubic adds to a parabola
+  constexpr double of_third_difference = 1.0 / 16.0, of_difference = 1.0 / 8.0;
+  const double step = wavelengths * wavelength, place = range / step,
+               first = std::floor(place) - 1.0, t = place - first;
+  if (!(first > nearest)) return false;
+  std::array<std::shared_ptr<const Arrivals>, 4> legs;
+  std::array<const Arrival*, 4> there{};
+  for (std::size_t i = 0; i < legs.size(); ++i) {
+    legs[i] = leg_at((first + double(i)) * step);
+    there[i] = same_ray(*legs[i], ray ? *ray : known);
+  }
+  if (there[1] == nullptr || there[2] == nullptr) return false;
+  const bool cubic = there[0] != nullptr && there[3] != nullptr;
+  if (!cubic) there[0] = there[1], there[3] = there[2];
+  // Lagrange's polynomials.
+  const std::array<double, 4> weight =
+      cubic ? std::array{-(t - 1.0) * (t - 2.0) * (t - 3.0) / 6.0, t * (t - 2.0) * (t - 3.0) / 2.0,
+                         -t * (t - 1.0) * (t - 3.0) / 2.0, t * (t - 1.0) * (t - 2.0) / 6.0}
+            : std::array{0.0, 2.0 - t, t - 1.0, 0.0};
+  const auto between = [&](const auto& of) {
+    return weight[0] * of(*there[0]) + weight[1] * of(*there[1]) + weight[2] * of(*there[2]) +
+           weight[3] * of(*there[3]);
+  };
+  const auto a = [&](std::size_t i) { return there[i]->amplitude; };
+  const std::complex<double> amplitude = between([](const Arrival& x) { return x.amplitude; });
+  const double error = cubic ? of_third_difference * std::abs(a(3) - a(0) + 3.0 * (a(1) - a(2)))
+                             : of_difference * std::abs(a(2) - a(1));
+  double energy = 0.0;
+  for (const Arrival& other : *legs[1]) energy += std::norm(other.amplitude);
+  if (error > tolerable * std::abs(amplitude) + of_the_leg * std::sqrt(energy)) return false;
+  if (!ray) {
+    ray = *there[1];
+    ray->launch_elevation = between([](const Arrival& x) { return x.launch_elevation; });
+    ray->arrival_elevation = between([](const Arrival& x) { return x.arrival_elevation; });
+    ray->delay = between([](const Arrival& x) { return x.delay; });
+    ray->horizontal_slowness = between([](const Arrival& x) { return x.horizontal_slowness; });
+    ray->path_length = between([](const Arrival& x) { return x.path_length; });
+    ray->absorption_db = between([](const Arrival& x) { return x.absorption_db; });
+  }
+  ray->kind = ArrivalKind::caustic;
+  ray->amplitude = amplitude;
+  ray->spreading = between([](const Arrival& x) { return x.spreading; });
+  ray->scattered = std::max(0.0, between([](const Arrival& x) { return x.scattered; }));
   return true;
 }
 
@@ -270,12 +342,18 @@ Arrivals PropagationPaths::find_in_plane(const Vec3& from, const Vec3& to, doubl
 Arrivals PropagationPaths::find(const Vec3& from, const Vec3& to, double frequency,
                                 const PathLimits& limits, Reuse* reuse) const {
   bool known = false;
-  const auto found = memory_->remember(
-      leg_key(Kept::legs, from, to, frequency, limits),
-      [&] { return std::make_shared<Arrivals>(search(from, to, frequency, limits)); },
-      bytes_of_arrivals, &known);
+  const auto found = leg(from, to, frequency, limits, &known);
   if (reuse != nullptr) reuse->count_legs(known);
   return *found;
+}
+
+std::shared_ptr<const Arrivals> PropagationPaths::leg(const Vec3& from, const Vec3& to,
+                                                      double frequency, const PathLimits& limits,
+                                                      bool* known) const {
+  return memory_->remember(
+      leg_key(Kept::legs, from, to, frequency, limits),
+      [&] { return std::make_shared<Arrivals>(search(from, to, frequency, limits)); },
+      bytes_of_arrivals, known);
 }
 
 Arrivals PropagationPaths::follow(std::span<const Arrival> paths, const Vec3& from, const Vec3& to,
@@ -303,6 +381,9 @@ Arrivals PropagationPaths::followed(std::span<const Arrival> known, const Vec3& 
   std::optional<RayTracer> tracer;
   if (!layered_ && !volume()) tracer.emplace(environment_of(plane(from, to)), frequency);
   const OceanMemory kept{*memory_, identity_};
+  const auto leg_at = [&](double other_range) {
+    return leg({0.0, 0.0, from.z()}, {other_range, 0.0, to.z()}, frequency, limits);
+  };
   Arrivals found;
   std::vector<const Arrival*> lost;  // over a map
   for (const Arrival& path : known) {
@@ -315,7 +396,9 @@ Arrivals PropagationPaths::followed(std::span<const Arrival> known, const Vec3& 
       same = followed_volume_path(*in_volume, path, from, to);
     else
       same = followed_path(*tracer, path, from.z(), to.z(), range);
-    if (path.kind == ArrivalKind::caustic && !(same && keeps_amplitude(path, *same, frequency)))
+    if (path.kind == ArrivalKind::caustic &&
+        !((same && keeps_amplitude(path, *same, frequency)) ||
+          put_from_grid(same, path, range, speed_at(from) / frequency, leg_at)))
       return find(from, to, frequency, limits);  // that of all rays of its term
     if (!same && tracer && area_) {
       lost.push_back(&path);

@@ -111,6 +111,10 @@ class PropagationPaths {
                                  const PathLimits& limits) const;
   [[nodiscard]] ExactKey leg_key(Kept kind, const Vec3& from, const Vec3& to, double frequency,
                                  const PathLimits& limits) const;
+  /// find(), as it is kept. \param known  whether it was; null: nobody asks
+  [[nodiscard]] std::shared_ptr<const Arrivals> leg(const Vec3& from, const Vec3& to,
+                                                    double frequency, const PathLimits& limits,
+                                                    bool* known = nullptr) const;
   [[nodiscard]] Arrivals followed(std::span<const Arrival> known, const Vec3& from, const Vec3& to,
                                   double frequency, const PathLimits& limits) const;
 

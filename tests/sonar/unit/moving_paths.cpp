@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
 
 #include "raytrace/paths/eigenrays.h"
+#include "raytrace/places/propagation_paths.h"
 
 namespace asdic::detail {
 namespace {
@@ -91,6 +94,46 @@ TEST(SamePath, KeepsUpAndDownApartButNotAtTheLevel) {
   const Arrivals level = {path(-0.2)};
   EXPECT_EQ(same_path(level, path(0.3), true), &level[0]);
   EXPECT_EQ(same_path(level, path(30.0), true), nullptr);
+}
+
+/// A shelf in summer, where a third of the rays have the amplitude of waves.
+Environment summer_shelf() {
+  Environment ocean;
+  const std::array<double, 5> depth = {0.0, 20.0, 35.0, 60.0, 120.0};
+  const std::array<double, 5> speed = {1521.0, 1520.0, 1501.0, 1494.0, 1493.0};
+  ocean.water = SoundSpeedProfile::table(depth, speed, Interpolation::pchip);
+  ocean.bottom = {.depth = 120.0, .material = FluidHalfSpace{.speed = 1650.0, .density = 1900.0}};
+  return ocean;
+}
+
+// Amplitudes of waves come from legs at ranges of a grid; those found at the very place are the
+// measure: 1 % of the leg for all its paths together.
+TEST(FollowedPaths, HaveTheAmplitudesThatAreFoundAtTheirPlace) {
+  const PropagationPaths paths(summer_shelf(), {});
+  constexpr double frequency = 3500.0;
+  const PathLimits limits{.max_surface_bounces = 3, .max_bottom_bounces = 4, .diffraction = true};
+  const Vec3 from(0.0, 0.0, 60.0);
+  Arrivals known = paths.find(from, {0.0, 5000.0, 80.0}, frequency, limits);
+  const auto by_waves = std::count_if(known.begin(), known.end(), [](const Arrival& path) {
+    return path.kind == ArrivalKind::caustic;
+  });
+  ASSERT_GT(by_waves, 5);
+  for (const double range : {5000.3, 5001.0, 5003.7, 5009.2, 5014.9}) {
+    const Vec3 to(0.0, range, 80.0);
+    known = paths.follow(known, from, to, frequency, limits);
+    const Arrivals there = paths.find(from, to, frequency, limits);
+    double off = 0.0, all = 0.0;
+    for (const Arrival& path : there) {
+      const Arrival* same = same_path(known, path, true);
+      const std::complex<double> amplitude = same != nullptr ? same->amplitude : 0.0;
+      all += std::norm(path.amplitude);
+      off += std::norm(amplitude - path.amplitude);
+      if (same != nullptr && std::norm(path.amplitude) > 1e-4 * all) {
+        EXPECT_NEAR(same->delay, path.delay, 2e-7) << range;
+      }
+    }
+    EXPECT_LT(std::sqrt(off / all), 0.01) << range;
+  }
 }
 
 }  // namespace
