@@ -161,7 +161,7 @@ std::span<const double> PlaceSounds::gains(const PathInterference& interference,
   double strongest = 0.0;
   for (const Sound& s : sounds_) strongest = std::max(strongest, strength(s));
   const double lasting = interference.pulse().duration();
-  add_up({interference, piece, strongest}, lasting);
+  add_up({interference, piece, strongest}, interference.pulse().lasting());
   for (std::size_t begin = 0, end = 0; begin < sounds_.size(); begin = end) {
     end = begin + 1;
     while (end < sounds_.size() && sounds_[end].delay - sounds_[end - 1].delay < lasting) ++end;

@@ -82,6 +82,7 @@ class PlaceSounds {
     bool first = true;  // of its part, in the order of delays
   };
   class Between;
+  /// \param lasting  sounds that are further apart do not interfere [s]
   void add_up(const Between& between, double lasting);
   void share_out(std::size_t begin, std::size_t end);
 

@@ -1,5 +1,6 @@
 #include "reverb/power/pulse_coherence.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <utility>
@@ -10,7 +11,13 @@ namespace asdic::detail {
 
 PulseCoherence::PulseCoherence(double duration, double step,
                                std::vector<std::complex<float>> samples)
-    : duration_(duration), step_(step), samples_(std::move(samples)) {
+    : duration_(duration), lasting_(duration), step_(step), samples_(std::move(samples)) {
+  constexpr float nothing = 0.01F;
+  const auto last = std::find_if(samples_.rbegin(), samples_.rend(), [](const auto& sample) {
+    return std::norm(sample) >= nothing * nothing;
+  });
+  if (!samples_.empty())  // the line to the sample after the last is above it, too
+    lasting_ = std::min(duration, step * static_cast<double>(samples_.rend() - last));
   for (const std::complex<float>& sample : samples_)
     fingerprint_ = mixed(fingerprint_, std::bit_cast<std::uint64_t>(sample));
 }

@@ -18,11 +18,13 @@ class PulseCoherence {
   [[nodiscard]] std::complex<double> operator()(double later) const noexcept;
   /// Beyond which it is zero [s].
   [[nodiscard]] double duration() const noexcept { return duration_; }
+  /// Time beyond which it stays below 0.01 [s].
+  [[nodiscard]] double lasting() const noexcept { return lasting_; }
   /// What tells it from that of another pulse: a hash of its samples.
   [[nodiscard]] std::uint64_t fingerprint() const noexcept { return fingerprint_; }
 
  private:
-  double duration_ = 1e300, step_ = 0.0;
+  double duration_ = 1e300, lasting_ = 1e300, step_ = 0.0;
   std::uint64_t fingerprint_ = 0;
   std::vector<std::complex<float>> samples_;  // from 0 on
 };
