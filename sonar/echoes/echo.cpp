@@ -66,9 +66,11 @@ class EchoFinder {
     if (out.leg.arrivals.empty()) return result;
     const bool exact = scenario_.propagation.exact_per_phone;
     Way home = way_back(out, exact ? 0 : -1);
-    const bool many = home.leg.arrivals.size() > context_.most_pairs / out.leg.arrivals.size();
+    const std::size_t pairs = out.leg.arrivals.size() * home.leg.arrivals.size();
+    const bool many = pairs > context_.most_pairs;
     if (many)
-      result.many = all_pairs(out, home);
+      result.many = in_two_steps(out.leg.arrivals, home.leg.arrivals,
+                                 exact || (context_.listens && differs_at_phones(out, home)));
     else
       draw_scattering(out, home);
     for (std::size_t n = 0; n < (exact ? phones_.size() : 1); ++n) {
@@ -83,9 +85,17 @@ class EchoFinder {
     }
     if (many) {
       shorten_bounces(result.legs.front().arrivals);
-    } else if (const bool plane = exact || !context_.listens || plane_waves(result);
-               !plane || (!exact && context_.listens &&
-                          !alike_at_phones(out, result.legs.back(), home.end))) {
+      return result;
+    }
+    if (!context_.listens) return result;
+    const bool plane = exact || plane_waves(result);
+    const bool own = !plane || (!exact && !alike_at_phones(out, result.legs.back(), home.end));
+    const bool curved = std::any_of(result.echoes.begin(), result.echoes.end(),
+                                    [](const EchoPath& echo) { return bool(echo.curve); });
+    if (curved && pairs * phones_.size() > context_.most_curved) {
+      result.scattered.clear();  // it is drawn leg by leg
+      result.many = in_two_steps(out.leg.arrivals, result.legs.back().arrivals, exact || own);
+    } else if (own) {
       TargetEchoes at_phones;
       for (std::size_t n = 0; n < phones_.size(); ++n)
         pair_up(source, out, to_phone(out, static_cast<int>(n), result.legs.back(), plane),
@@ -247,10 +257,23 @@ class EchoFinder {
     }
   }
 
-  [[nodiscard]] ManyEchoes all_pairs(const Way& out, const Way& back) const {
-    const Arrivals &there = out.leg.arrivals, &home = back.leg.arrivals;
-    ManyEchoes many{.target = index_, .array = context_.array, .followed = bounces_};
+  /// Whether what phones receive of the paths home is no plane wave about the reference point.
+  [[nodiscard]] bool differs_at_phones(const Way& out, const Way& back) const {
     const double c = context_.paths.speed_at(back.end.position);
+    const bool plane =
+        std::all_of(back.leg.arrivals.begin(), back.leg.arrivals.end(), [&](const Arrival& path) {
+          const Return received_there{
+              .delay = out.leg.arrivals.front().delay + path.delay,
+              .slowness = met_by(back.end.velocity, arriving_slowness(back.leg.bearing, path, c))};
+          return is_plane_wave(context_, received_there, path.path_length);
+        });
+    return !plane || !alike_at_phones(out, back.leg, back.end);
+  }
+
+  /// \param at_phones  each phone has paths of its own
+  [[nodiscard]] ManyEchoes in_two_steps(const Arrivals& there, const Arrivals& home,
+                                        bool at_phones) const {
+    ManyEchoes many{.target = index_, .array = context_.array, .followed = bounces_};
     std::size_t received = home.size();  // of the paths home, after one more of those there
     for (const Arrival& one : there) {
       while (received > 0 && one.delay + home[received - 1].delay > latest_) --received;
@@ -258,18 +281,7 @@ class EchoFinder {
     }
     many.first = there.front().delay + home.front().delay;
     many.last = std::min(latest_, there.back().delay + home.back().delay);
-    many.at_phones =
-        scenario_.propagation.exact_per_phone ||
-        (context_.listens &&
-         !std::all_of(home.begin(), home.end(),
-                      [&](const Arrival& path) {
-                        const Return received_there{
-                            .delay = there.front().delay + path.delay,
-                            .slowness = met_by(back.end.velocity,
-                                               arriving_slowness(back.leg.bearing, path, c))};
-                        return is_plane_wave(context_, received_there, path.path_length);
-                      })) ||
-        (context_.listens && !alike_at_phones(out, back.leg, back.end));
+    many.at_phones = at_phones;
     return many;
   }
 

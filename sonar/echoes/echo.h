@@ -25,6 +25,9 @@ struct EchoContext {
   Reuse* reuse = nullptr;         ///< counts the eigenrays that were known
   bool listens = true;            ///< false: nobody asks for the phones' samples
   std::size_t most_pairs = 4096;  ///< of paths: where there are more, the loudest are listed
+  /// Pairs times phones whose delays curve over the pulse: where there are more, their sound is
+  /// synthesised in two steps.
+  std::size_t most_curved = 1024;
 
   [[nodiscard]] const Scenario& scenario() const noexcept { return geometry.scenario(); }
   /// Who looks at a target in this ping.

@@ -8,6 +8,7 @@
 
 #include "core/geometry.h"
 #include "core/mixed_bits.h"
+#include "raytrace/parallel/parallel.h"
 #include "sonar/echoes/one_leg.h"
 #include "sonar/echoes/target_response.h"
 #include "sonar/paths/moving_paths.h"
@@ -186,13 +187,7 @@ class TwoSteps {
     const Sound pulse{.wave = filtered_pulse(whole), .middle = 0.5 * context_.pulse->duration()};
     const std::vector<Sound> struck = at_target(pulse);
     Baseband received;
-    if (struck.empty()) return received;
-    if (!receivers_.by_themselves) {
-      add(struck, -1, received);
-    } else {
-      for (std::size_t n = 0; n < receivers_.phones.size(); ++n)
-        add(struck, static_cast<int>(n), received);
-    }
+    if (!struck.empty()) add(struck, received);
     return received;
   }
 
@@ -224,14 +219,15 @@ class TwoSteps {
     return furthest;
   }
 
-  /// Segments of a sound along a leg; none: it need not be cut.
-  static std::vector<Segment> cuts(const MovingLeg& leg, const Sound& sound,
+  /// Segments of a sound along legs of one sender; none: it need not be cut.
+  static std::vector<Segment> cuts(std::span<const MovingLeg> legs, const Sound& sound,
                                    std::vector<double> course_changes, bool receiver_course_changes,
                                    double frequency, double aperture) {
     const double begin = sound.middle - sound.wave.half_duration(),
                  end = sound.middle + sound.wave.half_duration();
-    double longest = leg.straight_for(begin, end, frequency, aperture);
-    if (receiver_course_changes) longest = std::min(longest, turning_segment);
+    double longest = receiver_course_changes ? turning_segment : infinity;
+    for (const MovingLeg& leg : legs)
+      longest = std::min(longest, leg.straight_for(begin, end, frequency, aperture));
     std::erase_if(course_changes, [&](double t) { return t <= begin || t >= end; });
     if (course_changes.empty() && longest >= end - begin) return {};
     return segments(begin, end, std::move(course_changes), longest);
@@ -289,7 +285,7 @@ class TwoSteps {
     std::vector<Piece> pieces;
     double first = infinity, last = -infinity;
     for_each_piece({pulse},
-                   cuts(leg, pulse, course_changes(geometry_.sender().track),
+                   cuts({&leg, 1}, pulse, course_changes(geometry_.sender().track),
                         !course_changes(target_.track).empty(), highest(), 2.0 * body_radius()),
                    [&](const std::vector<std::optional<BandLimitedPulse>>& wave, double middle,
                        double moment) {
@@ -351,39 +347,48 @@ class TwoSteps {
     return sounds;
   }
 
-  /// Adds what is received of the sounds at the target. \param channel  phone that receives paths
-  /// of its own; −1: all about the reference point
-  void add(const std::vector<Sound>& struck, int channel, Baseband& received) const {
+  /// Adds what is received of the sounds at the target: by paths of each phone's own, or by those
+  /// of the reference point.
+  void add(const std::vector<Sound>& struck, Baseband& received) const {
     const int array = context_.array;
-    const Carried receiver = geometry_.receiver(array, channel);
-    MovingLeg leg(
-        context_, moving_, [&](double since) { return target_at(since); }, receiver,
-        mixed(target_identity(scenario_, index_), mixed(2, static_cast<std::uint64_t>(array))));
-    const Vec3 x =
-        channel < 0 ? Vec3::Zero() : receivers_.phones[static_cast<std::size_t>(channel)];
+    const bool own = receivers_.by_themselves;
+    const std::uint64_t ends =
+        mixed(target_identity(scenario_, index_), mixed(2, static_cast<std::uint64_t>(array)));
+    std::vector<MovingLeg> legs;
+    for (std::size_t n = 0; n < (own ? receivers_.phones.size() : 1); ++n)
+      legs.emplace_back(
+          context_, moving_, [&](double since) { return target_at(since); },
+          geometry_.receiver(array, own ? static_cast<int>(n) : -1), ends);
     for_each_piece(
         struck,
-        cuts(leg, struck.front(), course_changes(target_.track),
-             !course_changes(receiver.track).empty(), highest(),
+        cuts(legs, struck.front(), course_changes(target_.track),
+             !course_changes(legs.front().receiver().track).empty(), highest(),
              std::max(array_radius(), 2.0 * body_radius())),
         [&](const std::vector<std::optional<BandLimitedPulse>>& waves, double middle,
             double moment) {
-          const std::vector<LegPath> paths = leg.at(moment);
-          if (paths.empty()) return;
-          for (const Glint& glint : seen(paths.front().received.response.bearing, moment)) {
-            const auto place = static_cast<std::size_t>(std::max(glint.highlight, 0));
-            if (!waves[place]) continue;
-            Returns returns;
-            for (const LegPath& path : paths) {
-              Return r = leaving_at(path, middle, moment);
-              r.delay += path.lag.dot(glint.offset) - r.slowness.dot(x);
-              r.amplitude = amplitude(path.received, false) * glint.amplitude * struck[place].scale;
-              r.channel = channel < 0 ? Return::all_channels : channel;
-              returns.push_back(r);
+          std::vector<std::vector<LegPath>> paths(legs.size());
+          in_parallel(legs.size(), [&](std::size_t n) { paths[n] = legs[n].at(moment); });
+          std::vector<Returns> of_place(waves.size());
+          for (std::size_t n = 0; n < legs.size(); ++n) {
+            if (paths[n].empty()) continue;
+            const Vec3 x = own ? receivers_.phones[n] : Vec3(Vec3::Zero());
+            for (const Glint& glint : seen(paths[n].front().received.response.bearing, moment)) {
+              const auto place = static_cast<std::size_t>(std::max(glint.highlight, 0));
+              if (!waves[place]) continue;
+              for (const LegPath& path : paths[n]) {
+                Return r = leaving_at(path, middle, moment);
+                r.delay += path.lag.dot(glint.offset) - r.slowness.dot(x);
+                r.amplitude =
+                    amplitude(path.received, false) * glint.amplitude * struck[place].scale;
+                r.channel = own ? static_cast<int>(n) : Return::all_channels;
+                of_place[place].push_back(r);
+              }
             }
-            add_to(received, baseband_of(*waves[place], recording_, max_doppler_, returns,
-                                         receivers_.phones));
           }
+          for (std::size_t place = 0; place < waves.size(); ++place)
+            if (!of_place[place].empty())
+              add_to(received, baseband_of(*waves[place], recording_, max_doppler_, of_place[place],
+                                           receivers_.phones));
         });
   }
 

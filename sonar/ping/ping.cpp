@@ -131,6 +131,23 @@ PingRecord PingSimulator::blank_record(const PingGeometry& geometry) const {
   return record;
 }
 
+/// The part of a recording in which a target's many echoes are received, with what reflections
+/// delay and motion shifts; without samples where it holds none of them.
+static Recording around(const ManyEchoes& many, const Pulse& pulse, const Recording& whole) {
+  const double margin =
+      0.1 * (many.last - many.first + pulse.duration()) + 32.0 / response_half_band(pulse) + 0.1;
+  const auto sample = [&](double time) {
+    const double n = std::floor((time - whole.start) * whole.sample_rate);
+    return static_cast<std::size_t>(std::clamp(n, 0.0, static_cast<double>(whole.samples)));
+  };
+  const std::size_t begin = sample(many.first - margin),
+                    end = sample(many.last + pulse.duration() + margin);
+  Recording part = whole;
+  part.start += static_cast<double>(begin) / whole.sample_rate;
+  part.samples = end - begin;
+  return part;
+}
+
 /// Echoes, source → target × target → array, and the ping itself on its way to the array.
 std::vector<EchoPath> PingSimulator::sparse_returns(const EchoContext& context,
                                                     const Emission& emission,
@@ -142,9 +159,11 @@ std::vector<EchoPath> PingSimulator::sparse_returns(const EchoContext& context,
     TargetEchoes found = target_echoes(context, static_cast<int>(i));
     record.bounces.include(found.bounces);
     if (found.many) {
-      found.many->peak =
-          two_step_peak(context, *found.many, record.recording, max_doppler_,
-                        band_of(context, emission, record, found.echoes, found.many->last));
+      const Recording part = around(*found.many, emission.pulse, record.recording);
+      if (part.samples > 0)
+        found.many->peak =
+            two_step_peak(context, *found.many, part, max_doppler_,
+                          band_of(context, emission, record, found.echoes, found.many->last));
       record.many_echoes.push_back(*found.many);
       record.echoes.insert(record.echoes.end(), found.echoes.begin(), found.echoes.end());
       found.echoes.clear();
@@ -250,8 +269,10 @@ void PingSimulator::add_many_echoes(const EchoContext& context, const Emission& 
                    return echo.target == many.target && echo.array == many.array;
                  });
     const std::vector<BandPart> band = band_of(context, emission, record, loudest, many.last);
-    const Baseband more = two_step_echo(context, many, {phones, many.at_phones}, record.recording,
-                                        max_doppler_, band);
+    const Recording part = around(many, emission.pulse, record.recording);
+    if (part.samples == 0) continue;
+    const Baseband more =
+        two_step_echo(context, many, {phones, many.at_phones}, part, max_doppler_, band);
     if (more.channels > 0) add_resampled(more, received);
   }
 }

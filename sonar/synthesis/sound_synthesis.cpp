@@ -58,11 +58,18 @@ double largest_envelope(const Baseband& baseband, std::size_t channel) {
 void add_resampled(const Baseband& from, Baseband& to) {
   assert(from.channels == to.channels);
   const std::ptrdiff_t overlap = beside(to), recorded = static_cast<std::ptrdiff_t>(to.recorded);
+  // Beside a shorter record is what comes round of the sound beyond its other end.
+  const double from_end = from.start + static_cast<double>(from.recorded) / from.sample_rate,
+               to_end = to.start + static_cast<double>(recorded) / to.sample_rate,
+               step = 1.0 / to.sample_rate;
+  const double begin = from.start > to.start + step ? from.start : -infinity,
+               end = from_end < to_end - step ? from_end : infinity;
   in_parallel(to.channels, [&](std::size_t channel) {
     const SampledSignal signal = signal_of(from, channel);
     std::complex<float>* const row = to.values.data() + channel * to.samples;
     for (std::ptrdiff_t i = -overlap; i < recorded + overlap; ++i) {
       const double t = to.start + static_cast<double>(i) / to.sample_rate;
+      if (t < begin || t > end) continue;
       const double cycles = (from.carrier - to.carrier) * t;
       const auto outside = static_cast<double>(std::max(-i, i - recorded + 1));
       const double fade = outside <= 0.0 ? 0.0 : outside / static_cast<double>(overlap + 1);

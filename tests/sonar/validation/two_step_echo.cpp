@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "sonar/echoes/two_step_echo.h"
@@ -78,7 +79,8 @@ Received receive(const Scenario& s, std::size_t most_pairs) {
                             .pattern = pattern,
                             .frequency = pulse.centre_frequency(),
                             .pulse = &pulse,
-                            .most_pairs = most_pairs};
+                            .most_pairs = most_pairs,
+                            .most_curved = std::numeric_limits<std::size_t>::max()};
   const Recording recording = recording_of(s);
   const double max_doppler = doppler_bound(s);
   const Synthesizer synthesizer(pulse, recording, max_doppler);
