@@ -92,9 +92,11 @@ class EchoFinder {
     const bool own = !plane || (!exact && !alike_at_phones(out, result.legs.back(), home.end));
     const bool curved = std::any_of(result.echoes.begin(), result.echoes.end(),
                                     [](const EchoPath& echo) { return bool(echo.curve); });
-    if (curved && pairs * phones_.size() > context_.most_curved) {
+    const ManyEchoes steps =
+        in_two_steps(out.leg.arrivals, result.legs.back().arrivals, exact || own);
+    if (curved && steps.pairs * phones_.size() > context_.most_curved) {
       result.scattered.clear();  // it is drawn leg by leg
-      result.many = in_two_steps(out.leg.arrivals, result.legs.back().arrivals, exact || own);
+      result.many = steps;
     } else if (own) {
       TargetEchoes at_phones;
       for (std::size_t n = 0; n < phones_.size(); ++n)

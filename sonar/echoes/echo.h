@@ -46,8 +46,8 @@ struct EchoContext {
 /// The echoes of one target: eigenrays out, eigenrays back, and every pair of them at every
 /// highlight.
 ///
-/// Where there are more than EchoContext::most_pairs, `echoes` are the loudest pairs alone and
-/// nothing of them is to be gridded: what is received of `many` is two_step_echo().
+/// Where there is `many`, nothing of `echoes` is to be gridded: what is received is two_step_echo().
+/// Of more pairs than EchoContext::most_pairs they are the loudest alone.
 struct TargetEchoes {
   std::vector<Leg> legs;  ///< source → target, then target → array (or one per phone)
   std::vector<EchoPath> echoes;
