@@ -111,7 +111,7 @@ class PropagationPaths {
                                  const PathLimits& limits) const;
   [[nodiscard]] ExactKey leg_key(Kept kind, const Vec3& from, const Vec3& to, double frequency,
                                  const PathLimits& limits) const;
-  /// find(), as it is kept. \param known  whether it was; null: nobody asks
+  /// Returns the leg of find() without copying it. \param known  is set to whether it had been kept
   [[nodiscard]] std::shared_ptr<const Arrivals> leg(const Vec3& from, const Vec3& to,
                                                     double frequency, const PathLimits& limits,
                                                     bool* known = nullptr) const;

@@ -87,15 +87,16 @@ class EchoFinder {
       shorten_bounces(result.legs.front().arrivals);
       return result;
     }
-    if (!context_.listens) return result;
-    const bool plane = exact || plane_waves(result);
-    const bool own = !plane || (!exact && !alike_at_phones(out, result.legs.back(), home.end));
+    const bool plane = exact || !context_.listens || plane_waves(result);
+    const bool own = !plane || (!exact && context_.listens &&
+                                !alike_at_phones(out, result.legs.back(), home.end));
     const bool curved = std::any_of(result.echoes.begin(), result.echoes.end(),
                                     [](const EchoPath& echo) { return bool(echo.curve); });
-    const ManyEchoes steps =
-        in_two_steps(out.leg.arrivals, result.legs.back().arrivals, exact || own);
-    if (curved && steps.pairs * phones_.size() > context_.most_curved) {
-      result.scattered.clear();  // it is drawn leg by leg
+    if (curved && pairs > context_.most_curved) {
+      const ManyEchoes steps =
+          in_two_steps(out.leg.arrivals, result.legs.back().arrivals, exact || own);
+      if (steps.pairs == 0) return result;  // none is received in time
+      result.scattered.clear();             // it is drawn leg by leg
       result.many = steps;
     } else if (own) {
       TargetEchoes at_phones;

@@ -25,9 +25,10 @@ struct EchoContext {
   Reuse* reuse = nullptr;         ///< counts the eigenrays that were known
   bool listens = true;            ///< false: nobody asks for the phones' samples
   std::size_t most_pairs = 4096;  ///< of paths: where there are more, the loudest are listed
-  /// Pairs times phones whose delays curve over the pulse: where there are more, their sound is
-  /// synthesised in two steps.
-  std::size_t most_curved = 1024;
+  /// Pairs of paths whose delays curve over the pulse: more are synthesised in two steps. About as
+  /// many cost the same either way with 32 phones. It is no number of returns, since a phone alone
+  /// receives what it receives in an array.
+  std::size_t most_curved = 128;
 
   [[nodiscard]] const Scenario& scenario() const noexcept { return geometry.scenario(); }
   /// Who looks at a target in this ping.
@@ -46,8 +47,8 @@ struct EchoContext {
 /// The echoes of one target: eigenrays out, eigenrays back, and every pair of them at every
 /// highlight.
 ///
-/// Where there is `many`, nothing of `echoes` is to be gridded: what is received is two_step_echo().
-/// Of more pairs than EchoContext::most_pairs they are the loudest alone.
+/// If `many` is set, nothing of `echoes` is to be gridded, because two_step_echo() makes their
+/// sound; `echoes` holds the loudest pairs alone if there are more than EchoContext::most_pairs.
 struct TargetEchoes {
   std::vector<Leg> legs;  ///< source → target, then target → array (or one per phone)
   std::vector<EchoPath> echoes;

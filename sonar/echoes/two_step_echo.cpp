@@ -8,7 +8,6 @@
 
 #include "core/geometry.h"
 #include "core/mixed_bits.h"
-#include "raytrace/parallel/parallel.h"
 #include "sonar/echoes/one_leg.h"
 #include "sonar/echoes/target_response.h"
 #include "sonar/paths/moving_paths.h"
@@ -366,16 +365,15 @@ class TwoSteps {
              std::max(array_radius(), 2.0 * body_radius())),
         [&](const std::vector<std::optional<BandLimitedPulse>>& waves, double middle,
             double moment) {
-          std::vector<std::vector<LegPath>> paths(legs.size());
-          in_parallel(legs.size(), [&](std::size_t n) { paths[n] = legs[n].at(moment); });
           std::vector<Returns> of_place(waves.size());
           for (std::size_t n = 0; n < legs.size(); ++n) {
-            if (paths[n].empty()) continue;
+            const std::vector<LegPath> paths = legs[n].at(moment);
+            if (paths.empty()) continue;
             const Vec3 x = own ? receivers_.phones[n] : Vec3(Vec3::Zero());
-            for (const Glint& glint : seen(paths[n].front().received.response.bearing, moment)) {
+            for (const Glint& glint : seen(paths.front().received.response.bearing, moment)) {
               const auto place = static_cast<std::size_t>(std::max(glint.highlight, 0));
               if (!waves[place]) continue;
-              for (const LegPath& path : paths[n]) {
+              for (const LegPath& path : paths) {
                 Return r = leaving_at(path, middle, moment);
                 r.delay += path.lag.dot(glint.offset) - r.slowness.dot(x);
                 r.amplitude =

@@ -12,6 +12,7 @@
 #include "core/huge_pages.h"
 #include "raytrace/parallel/stop.h"
 #include "raytrace/warnings/warnings.h"
+#include "raytrace/waves/put_roughness.h"
 #include "reverb/power/reverberation_streams.h"
 #include "sonar/echoes/direct_blast.h"
 #include "sonar/echoes/echo.h"
@@ -131,11 +132,24 @@ PingRecord PingSimulator::blank_record(const PingGeometry& geometry) const {
   return record;
 }
 
-/// The part of a recording in which a target's many echoes are received, with what reflections
-/// delay and motion shifts; without samples where it holds none of them.
-static Recording around(const ManyEchoes& many, const Pulse& pulse, const Recording& whole) {
-  const double margin =
-      0.1 * (many.last - many.first + pulse.duration()) + 32.0 / response_half_band(pulse) + 0.1;
+/// Time by which a response that is sampled over a pulse's band delays sound at most [s].
+static double delay_of_response(const Pulse& pulse) { return 32.0 / response_half_band(pulse); }
+
+/// The part of a recording in which a target's many echoes are received; without samples where it
+/// holds none of them. All of it where boundaries scatter, because how late that comes is drawn.
+static Recording around(const ManyEchoes& many, const EchoContext& context, const Pulse& pulse,
+                        const Recording& whole) {
+  if (is_rough(context.scenario().environment)) return whole;
+  constexpr double slowest = 1000.0;  // [m/s]
+  double aperture = 0.0;              // of phones and highlights, there and back [m]
+  for (const Vec3& x : context.geometry.phones(context.array))
+    aperture = std::max(aperture, x.norm());
+  double body = 0.0;
+  for (const Highlight& one :
+       context.scenario().targets[static_cast<std::size_t>(many.target)].highlights)
+    body = std::max(body, one.offset.norm());
+  const double margin = (aperture + 2.0 * body) / slowest + delay_of_response(pulse) + 0.1 +
+                        0.1 * (many.last - many.first + pulse.duration());
   const auto sample = [&](double time) {
     const double n = std::floor((time - whole.start) * whole.sample_rate);
     return static_cast<std::size_t>(std::clamp(n, 0.0, static_cast<double>(whole.samples)));
@@ -159,7 +173,7 @@ std::vector<EchoPath> PingSimulator::sparse_returns(const EchoContext& context,
     TargetEchoes found = target_echoes(context, static_cast<int>(i));
     record.bounces.include(found.bounces);
     if (found.many) {
-      const Recording part = around(*found.many, emission.pulse, record.recording);
+      const Recording part = around(*found.many, context, emission.pulse, record.recording);
       if (part.samples > 0)
         found.many->peak =
             two_step_peak(context, *found.many, part, max_doppler_,
@@ -204,9 +218,7 @@ static std::vector<std::pair<double, double>> times_of(const Pulse& pulse,
     each.push_back(received_between(pulse, echo));
     end = std::max(end, each.back().second);
   }
-  // A response that is sampled over the band delays sound by that much at most.
-  const double delayed = 32.0 / response_half_band(pulse);
-  for (auto& [first, last] : each) last = std::min(last + delayed, end);
+  for (auto& [first, last] : each) last = std::min(last + delay_of_response(pulse), end);
   std::sort(each.begin(), each.end());
   for (const auto& [first, last] : each) {
     if (together.empty() || first > together.back().second + pulse.duration())
@@ -269,7 +281,7 @@ void PingSimulator::add_many_echoes(const EchoContext& context, const Emission& 
                    return echo.target == many.target && echo.array == many.array;
                  });
     const std::vector<BandPart> band = band_of(context, emission, record, loudest, many.last);
-    const Recording part = around(many, emission.pulse, record.recording);
+    const Recording part = around(many, context, emission.pulse, record.recording);
     if (part.samples == 0) continue;
     const Baseband more =
         two_step_echo(context, many, {phones, many.at_phones}, part, max_doppler_, band);

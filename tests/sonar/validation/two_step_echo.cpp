@@ -3,6 +3,7 @@
 // summed pair by pair with the pulse itself, and against every pair of eigenrays gridded.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -209,6 +210,62 @@ TEST(TwoStepEcho, IsWhatPairsAreForALongPulse) {
   Scenario s = moving();
   s.pulse.duration = 1.0;
   EXPECT_LT(difference_db(receive(s, 1'000'000).sound, receive(s, 0).sound), -36.0);
+}
+
+/// A pulse of a second on the move by a few hundred pairs, so that their delays curve.
+Scenario curved() {
+  Scenario s = moving();
+  s.pulse.duration = 1.0;
+  s.propagation.max_surface_bounces = s.propagation.max_bottom_bounces = 4;
+  return s;
+}
+
+// Whether that is done depends on the paths alone: not on who listens, nor on how long.
+TEST(TwoStepEcho, ServesCurvedPairsWhoeverListens) {
+  Scenario s = curved();
+  const PingSimulator simulator(s);
+  const PingRecord record = simulator.sound(1);
+  ASSERT_EQ(record.many_echoes.size(), 1);
+  const std::size_t places = s.targets[0].highlights.size();
+  EXPECT_GT(record.many_echoes[0].pairs, 128);
+  EXPECT_EQ(record.echoes.size(), places * record.many_echoes[0].pairs);  // all are listed
+  EXPECT_NEAR(record.summary.at(0).echo_peak_db, simulator.levels(1).summary.at(0).echo_peak_db,
+              1e-9);
+  s.pings.recording_duration += 1.0;
+  const PingRecord longer = PingSimulator(s).sound(1);
+  ASSERT_EQ(longer.many_echoes.size(), 1);
+  const std::size_t samples = record.recording.samples, more = longer.recording.samples;
+  double off = 0.0, all = 0.0;
+  for (std::size_t n = 0; n < record.phones.size(); ++n)
+    for (std::size_t i = 0; i < samples; ++i) {
+      const double x = record.pressure[n * samples + i];
+      off += std::pow(double(longer.pressure[n * more + i]) - x, 2), all += x * x;
+    }
+  EXPECT_LT(db_from_power(off / all), -60.0);
+}
+
+// What a phone far from the others receives is not cut off with the time in which they hear.
+TEST(TwoStepEcho, ReachesPhonesFarApart) {
+  Scenario s = curved();
+  s.pulse.duration = 0.4;
+  s.arrays[0].phones = {{-700.0, 0.0, 0.0}, {700.0, 0.0, 0.0}};
+  const PingRecord record = PingSimulator(s).sound(1);
+  ASSERT_EQ(record.many_echoes.size(), 1);
+  const std::size_t samples = record.recording.samples;
+  std::array<double, 2> energy{};
+  for (std::size_t n = 0; n < 2; ++n)
+    for (std::size_t i = 0; i < samples; ++i)
+      energy[n] += std::pow(double(record.pressure[n * samples + i]), 2);
+  const Baseband whole = receive(s, 0).sound;
+  for (std::size_t n = 0; n < 2; ++n) {
+    double there = 0.0;
+    for (const auto& value : whole.channel(n).first(whole.recorded))
+      there += double(std::norm(value));
+    // of the analytic signal, over the pulse's peak at 1 m
+    const double peak = std::sqrt(2.0) * 1e-6 * amplitude_from_db(200.0);
+    const double expected = 0.5 * peak * peak * there / whole.sample_rate;
+    EXPECT_NEAR(db_from_power(energy[n] / 4000.0 / expected), 0.0, 0.2) << n;
+  }
 }
 
 // Absorption that changes by 14 dB over the band along the longest path.
