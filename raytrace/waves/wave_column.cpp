@@ -8,6 +8,7 @@
 #include "core/units.h"
 #include "raytrace/ocean/layered_floor.h"
 #include "raytrace/ocean/reflection_formulas.h"
+#include "raytrace/waves/interface_wave.h"
 
 namespace asdic::detail {
 namespace {
@@ -84,6 +85,20 @@ Complex reflection_at(const Boundary& boundary, const WaterAtBoundary& water, do
   const Complex r = std::visit(behind, boundary.material);
   if (boundary.roughness.smooth()) return r;
   return r * coherent_reflection(boundary.roughness, std::abs((w / k).real()), k);
+}
+
+double WaveColumn::slowest_wavenumber() const {
+  double found = largest_;
+  for (const Boundary* boundary : {&environment_.surface, &environment_.bottom}) {
+    double nearest = infinity;
+    for (const std::size_t receiver : edge_of_)
+      if (receiver < edges_.size())
+        nearest = std::min(nearest, std::abs(edges_[receiver] - boundary->depth));
+    const double away = std::abs(edges_[source_edge_] - boundary->depth) + nearest;
+    for (const InterfaceWave& wave : interface_waves(environment_, *boundary, frequency_, away))
+      found = std::max(found, wave.wavenumber.real());
+  }
+  return found;
 }
 
 WaveColumn::WaveColumn(const Environment& environment, double frequency, double source_depth,

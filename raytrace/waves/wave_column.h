@@ -84,6 +84,9 @@ class WaveColumn {
   /// ω over the lowest and the highest speed [1/m].
   [[nodiscard]] double largest_wavenumber() const noexcept { return largest_; }
   [[nodiscard]] double smallest_wavenumber() const noexcept { return smallest_; }
+  /// The largest wavenumber of all that reaches source and receivers, waves along the boundaries
+  /// included [1/m].
+  [[nodiscard]] double slowest_wavenumber() const;
 
  private:
   void cut(double from, double to, double omega);

@@ -83,13 +83,13 @@ WaveIntegral::WaveIntegral(const WaveColumn& column, std::size_t rows, double de
 
 WaveIntegral::Contour WaveIntegral::far_contour() const {
   const double farthest = *std::max_element(ranges_.begin(), ranges_.end());
-  const double k = column_.largest_wavenumber(), slow = column_.smallest_wavenumber();
+  const double k = column_.slowest_wavenumber(), steep = column_.smallest_wavenumber();
   Contour c;
   c.period = far_period * farthest;
   c.spacing = 2.0 * pi / c.period;
   c.offset = suppression / c.period;
-  c.steepest = steep_cosine[0] * slow;
-  c.steep_width = (steep_cosine[1] - steep_cosine[0]) * slow;
+  c.steepest = steep_cosine[0] * steep;
+  c.steep_width = (steep_cosine[1] - steep_cosine[0]) * steep;
   c.flattest = k * 1.0005;
   c.flat_width = std::max(beyond * k, 60.0 / near_range_);
   c.first = std::size_t(c.steepest / c.spacing);
@@ -103,7 +103,7 @@ WaveIntegral::Contour WaveIntegral::near_contour() const {
     nearest = std::min(nearest, ranges_[i]);
     farthest = std::max(farthest, ranges_[i]);
   }
-  const double k = column_.largest_wavenumber();
+  const double k = column_.slowest_wavenumber();
   Contour c;
   c.period = near_period * std::max(0.5 * depth_, farthest);
   c.spacing = 2.0 * pi / c.period;

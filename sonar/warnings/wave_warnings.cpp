@@ -10,6 +10,7 @@
 #include "raytrace/warnings/warnings.h"
 #include "raytrace/waves/diffraction.h"
 #include "raytrace/waves/focus.h"
+#include "raytrace/waves/interface_wave.h"
 #include "raytrace/waves/ray_errors.h"
 #include "sonar/echoes/leg_response.h"
 #include "sonar/echoes/sparse_sound.h"
@@ -27,6 +28,7 @@ struct AcrossThePulse {
   double corners = 0.0;     ///< share of the leg's energy, of turned_at_corners()
   double caustics = 0.0;    ///< the same, of unsure_amplitudes()
   double direct = 0.0;      ///< pressure beside_surface_rays(), over the leg's amplitude
+  double interface = 0.0;   ///< pressure of waves along the boundaries, over the leg's amplitude
   double reflection = 0.0;  ///< error of plane-wave reflection, over the leg's amplitude
 };
 
@@ -163,6 +165,26 @@ double beside_surface_rays(const Environment& ocean, double source_depth, double
   return direct && energy > 0.0 ? *direct / std::sqrt(energy) : 0.0;
 }
 
+/// Pressure of waves along the boundaries over the amplitude of the leg.
+double along_boundaries(const Environment& ocean, double source_depth, double receiver_depth,
+                        double range, double frequency, const Arrivals& paths) {
+  double energy = 0.0;
+  for (const Arrival& path : paths) energy += std::norm(path.amplitude) + path.scattered;
+  if (!(energy > 0.0)) return 0.0;
+  return interface_wave_pressure(ocean, source_depth, receiver_depth, range, frequency) /
+         std::sqrt(energy);
+}
+
+std::string line_of_interface(double share, const std::string& whose) {
+  constexpr double tolerable_share = 0.12;  // 1 dB
+  if (!(share > tolerable_share)) return "";
+  return formatted(
+      "propagation: waves along a boundary, which are no rays, come to or from %s with roughly "
+      "%.1g "
+      "times the pressure of all rays together; they are left out",
+      whose.c_str(), share);
+}
+
 std::string line_of_direct(double share, const std::string& whose) {
   constexpr double tolerable_share = 0.25;  // 2 dB
   if (!(share > tolerable_share)) return "";
@@ -272,7 +294,9 @@ std::vector<std::string> wave_warnings(const PingGeometry& geometry, const Propa
     const Separation way = separation(from, to);
     const auto solver = paths.solver(paths.plane(from, way.bearing, way.range));
     const double reflection = reflection_error(solver->environment(), from.z(), centre, arrivals);
-    if (!paths.layered()) return AcrossThePulse{.reflection = reflection};
+    const double interface =
+        along_boundaries(solver->environment(), from.z(), to.z(), way.range, centre, arrivals);
+    if (!paths.layered()) return AcrossThePulse{.interface = interface, .reflection = reflection};
     AcrossThePulse across = across_the_pulse(
         paths, {.from = from, .to = to, .paths = arrivals, .frequency = centre, .limits = limits},
         received, scenario.propagation.band);
@@ -281,6 +305,7 @@ std::vector<std::string> wave_warnings(const PingGeometry& geometry, const Propa
     const Environment& ocean = paths.along_transect().environment();
     across.corners = turned_at_corners(ocean, arrivals, centre);
     across.reflection = reflection;
+    across.interface = interface;
     across.direct = beside_surface_rays(ocean, from.z(), to.z(), way.range, centre, arrivals);
     return across;
   };
@@ -295,6 +320,7 @@ std::vector<std::string> wave_warnings(const PingGeometry& geometry, const Propa
                   line_of_share(std::max(there.corners, home.corners), name, beside_corners),
                   line_of_share(std::max(there.caustics, home.caustics), name, at_caustics),
                   line_of_direct(std::max(there.direct, home.direct), name),
+                  line_of_interface(std::max(there.interface, home.interface), name),
                   line_of_reflection(std::max(there.reflection, home.reflection), name)},
                  found);
   }
