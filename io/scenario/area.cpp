@@ -251,7 +251,7 @@ std::optional<double> AreaReading::wind_speed(double x, double y) const {
   return wind_->at(x, y).value;
 }
 
-std::shared_ptr<const Area> AreaReading::build(const Environment& ocean) {
+std::shared_ptr<const Area> AreaReading::build(const Environment& ocean, const Transect& transect) {
   std::map<int, BoundaryMaterial> materials;
   const double depth = ocean.bottom.depth;
   const WaterAtBoundary water{.speed = ocean.water.at(depth).c,
@@ -280,7 +280,7 @@ std::shared_ptr<const Area> AreaReading::build(const Environment& ocean) {
                                                  .seabed = seabed_,
                                                  .materials = std::move(materials),
                                                  .wind = wind_},
-                                      ocean, settings_);
+                                      ocean, settings_, transect);
 }
 
 std::string extent_text(const ScalarMap& map, bool on_its_axes) {

@@ -33,7 +33,8 @@ class AreaReading {
 
   /// What the numbers of the sea floor stand for, and then the area. \param ocean  all that has no
   /// map
-  [[nodiscard]] std::shared_ptr<const Area> build(const Environment& ocean);
+  [[nodiscard]] std::shared_ptr<const Area> build(const Environment& ocean,
+                                                  const Transect& transect);
 
  private:
   TomlTable table_;

@@ -207,7 +207,7 @@ void read_environment(TomlTable table, const std::filesystem::path& folder, doub
   scenario.wind_speed = read_wind(table, reading.area);
   scenario.environment = read_ocean(table, reading);
   if (area) {
-    scenario.area = area->build(scenario.environment);
+    scenario.area = area->build(scenario.environment, scenario.transect);
     scenario.environment = along_transect(*scenario.area, scenario.transect);
   }
   table.finish();

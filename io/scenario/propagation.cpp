@@ -62,7 +62,7 @@ PropagationCase of_ocean_and_run(const TomlValue& document, const std::filesyste
   const bool along = environment.has("transect");
   const Transect transect = scenario::read_transect(environment);
   if (area) {
-    run.on_area = {.area = area->build(run.environment),
+    run.on_area = {.area = area->build(run.environment, transect),
                    .place = Vec2(transect.x, transect.y),
                    .bearing = transect.bearing};
     run.environment =

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "raytrace/math/hermite.h"
+#include "raytrace/ocean/slice.h"
 
 namespace asdic::detail {
 namespace {
@@ -51,13 +52,26 @@ struct FloorSample {
 
 }  // namespace
 
-Area::Area(Maps maps, Environment rest, AreaSettings settings)
-    : maps_(std::move(maps)), settings_(std::move(settings)), everywhere_(std::move(rest)) {}
+Area::Area(Maps maps, Environment rest, AreaSettings settings, Transect transect)
+    : maps_(std::move(maps)),
+      settings_(std::move(settings)),
+      everywhere_(std::move(rest)),
+      transect_(transect) {}
 
 SoundSpeed3D Area::speed_at(double x, double y, double z) const {
   if (maps_.water) return maps_.water->at(x, y, z);
-  const SoundSpeed c = everywhere_.water.at(z);
-  return {.c = c.c, .c_z = c.dc_dz, .c_zz = c.d2c_dz2};
+  const SoundSpeed2D c = sound_speed(everywhere_, transect_.range_of(x, y), z);
+  const double east = std::sin(transect_.bearing), north = std::cos(transect_.bearing);
+  return {.c = c.c,
+          .c_x = c.c_r * east,
+          .c_y = c.c_r * north,
+          .c_z = c.c_z,
+          .c_xx = c.c_rr * east * east,
+          .c_xy = c.c_rr * east * north,
+          .c_xz = c.c_rz * east,
+          .c_yy = c.c_rr * north * north,
+          .c_yz = c.c_rz * north,
+          .c_zz = c.c_zz};
 }
 
 const BoundaryMaterial& Area::material_at(double x, double y) const {
@@ -360,7 +374,8 @@ Area Area::scattering(ScatteredElsewhere surface, ScatteredElsewhere bottom) con
 }
 
 Environment Area::section(const Vec2& place, double bearing, double reach) const {
-  Environment plane = everywhere_;
+  Environment plane = slice(everywhere_, transect_.range_of(place.x(), place.y()),
+                            std::cos(bearing - transect_.bearing));
   const double step = spacing(place);
   reach = std::max(reach_on(maps_.floor, place, bearing, step, reach), 10.0 * step);
   plane.bottom = floor_along(place, bearing, reach);

@@ -6,12 +6,13 @@
 #include "raytrace/area/area_maps.h"
 #include "raytrace/area/area_settings.h"
 #include "raytrace/ocean/environment.h"
+#include "raytrace/ocean/transect.h"
 
 namespace asdic::detail {
 
 /// An ocean over a map: depth, water and sea floor by maps of their own, the rest of an Environment
-/// everywhere the same. Immutable but for what it reads as it is asked. Shared by threads.
-/// docs/theory/area.md
+/// everywhere the same, or along a transect. Immutable but for what it reads as it is asked. Shared
+/// by threads. docs/theory/area.md
 class Area {
  public:
   static constexpr double film = 0.1;  ///< of water over land [m]
@@ -23,8 +24,9 @@ class Area {
     std::map<int, BoundaryMaterial> materials = {};  ///< of the seabed's numbers
     std::optional<ScalarMap> wind = {};              ///< at 10 m [m/s]; none: one everywhere
   };
-  /// \param everywhere  surface, losses, roughness; flat   \param settings  where it was read
-  Area(Maps maps, Environment everywhere, AreaSettings settings = {});
+  /// \param everywhere  surface, losses, roughness, and water where there is no map of it
+  /// \param settings  where it was read   \param transect  along which `everywhere` varies
+  Area(Maps maps, Environment everywhere, AreaSettings settings = {}, Transect transect = {});
 
   [[nodiscard]] const ScalarMap& floor() const noexcept { return maps_.floor; }
   [[nodiscard]] const std::optional<WaterMap>& water() const noexcept { return maps_.water; }
@@ -32,6 +34,7 @@ class Area {
   [[nodiscard]] const std::optional<ScalarMap>& wind() const noexcept { return maps_.wind; }
   [[nodiscard]] const AreaSettings& settings() const noexcept { return settings_; }
   [[nodiscard]] const Environment& everywhere() const noexcept { return everywhere_; }
+  [[nodiscard]] const Transect& transect() const noexcept { return transect_; }
   [[nodiscard]] const MapFrame& frame() const noexcept { return maps_.floor.frame(); }
 
   /// Depth of the sea floor [m], at most 0 on land.
@@ -89,6 +92,7 @@ class Area {
   Maps maps_;
   AreaSettings settings_;
   Environment everywhere_;
+  Transect transect_;
 };
 
 }  // namespace asdic::detail

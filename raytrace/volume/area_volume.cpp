@@ -13,7 +13,7 @@ constexpr double more = 1.5;  // than what was measured on lines
 
 AreaVolume::AreaVolume(std::shared_ptr<const Area> area)
     : area_(std::move(area)),
-      column_(area_->everywhere(), Transect{}),
+      column_(area_->everywhere(), area_->transect()),
       blocks_(area_->floor(), area_->surface_depth() + Area::film) {
   const auto look = [](double step, double most_lines, const auto& at) {
     const int lines = static_cast<int>(std::min(most_lines, measured / step));

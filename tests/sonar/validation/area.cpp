@@ -71,12 +71,22 @@ struct SlopeAsBoth {
   Environment along = over_sand(summer(), 900.0);
   std::shared_ptr<const Area> area;
 
-  SlopeAsBoth() {
+  /// \param front  the water varies along the transect as well, and has no map
+  explicit SlopeAsBoth(bool front = false) {
+    Environment rest = over_sand(summer(), 900.0);
+    if (front)
+      rest.section = SoundSpeedSection(
+          std::vector{-3e3, 1e3, 6e3}, std::vector{0.0, 100.0, 1500.0},
+          std::vector{1500.0, 1495.0, 1510.0, 1520.0, 1500.0, 1510.0, 1525.0, 1498.0, 1512.0});
+    along = rest;
     along.bottom.shape = BoundaryShape(std::vector{-25e3, 25e3}, std::vector{1400.0, 400.0},
                                        ShapeInterpolation::piecewise_linear);
-    area = area_of(over_sand(summer(), 900.0), [this](double x, double y) {
-      return along.bottom.depth_at(transect.range_of(x, y));
-    });
+    area = std::make_shared<const Area>(
+        Area::Maps{.floor = floor_of(30e3, 250.0,
+                                     [this](double x, double y) {
+                                       return along.bottom.depth_at(transect.range_of(x, y));
+                                     })},
+        rest, AreaSettings{}, transect);
   }
   SlopeAsBoth(const SlopeAsBoth&) = delete;
   SlopeAsBoth& operator=(const SlopeAsBoth&) = delete;
@@ -101,6 +111,22 @@ TEST(Area, ASlopeIsTheTransect) {
     const auto [transect, area] = slope.paths(bearing, 2);
     expect_alike(area, transect, 1e-6, 0.05);
   }
+}
+
+// Water of a section beside a map of the floor lies along the transect, whoever asks.
+TEST(Area, ASectionBesideAMapIsTheTransects) {
+  const SlopeAsBoth slope(true);
+  for (const double bearing : {30.0, 75.0, 210.0}) {
+    SCOPED_TRACE(bearing);
+    const auto [transect, area] = slope.paths(bearing, 2);
+    expect_alike(area, transect, 1e-6, 0.05);
+    const Vec3 place(2000.0, -700.0, 80.0);
+    const double range = slope.transect.range_of(place.x(), place.y());
+    EXPECT_DOUBLE_EQ(slope.area->speed_at(place.x(), place.y(), place.z()).c,
+                     sound_speed(slope.along, range, place.z()).c);
+  }
+  const auto [transect, area] = slope.paths(75.0, 3);
+  expect_alike(area, transect, 1e-6, 0.05);
 }
 
 // In three dimensions, across the slope, where rays are turned sideways.
