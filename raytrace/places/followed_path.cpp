@@ -11,18 +11,20 @@
 namespace asdic::detail {
 namespace {
 
-constexpr double near_enough = 1e-4;    // miss at the receiver [m]: τ is stationary, so 1e-12 s
-constexpr double furthest_turn = 0.02;  // of the launch angle [rad]
+constexpr double near_enough = 1e-4;  // miss at the receiver [m]: τ is right to second order
+constexpr double least_reach = 0.02;  // of the launch angle, that is searched at least [rad]
 constexpr int most_steps = 12;
 
 /// The path that a ray is which ends at the receiver. Equations as in docs/theory/layered-rays.md.
-Arrival described(const RayTrajectory& ray, Spreading spreading, const Arrival& before) {
+/// \param miss  depth of the receiver below the ray's end [m]
+Arrival described(const RayTrajectory& ray, Spreading spreading, const Arrival& before,
+                  double miss) {
   const RaySegment& last = ray.segments.back();
   const RayState& end = last.end;
   Arrival path = before;  // counts are the same
   path.launch_elevation = ray.launch_elevation;
   path.arrival_elevation = std::atan2(-end.zeta, end.xi);
-  path.delay = end.time;
+  path.delay = end.time + end.zeta * miss;  // ∂τ/∂z = ζ
   path.q = end.q;
   path.path_length = end.length;
   path.horizontal_slowness = end.xi;
@@ -76,8 +78,14 @@ class RaysOfHistory {
     return miss * cosine() / (side * ray_.segments.back().end.q);
   }
   [[nodiscard]] bool meets(double miss) const { return std::abs(miss) * cosine() < near_enough; }
+  /// Angle under which the source sees that miss of the last ray, along a straight line of its
+  /// length [rad].
+  [[nodiscard]] double angle_of(double miss) const {
+    return std::abs(miss) * cosine() / std::max(path_.path_length, 1e-3);
+  }
   [[nodiscard]] Arrival arrival() const {
-    return described(ray_, spreading_across(tracer_.environment()), path_);
+    return described(ray_, spreading_across(tracer_.environment()), path_,
+                     receiver_depth_ - ray_.segments.back().end.depth);
   }
 
  private:
@@ -122,12 +130,13 @@ std::optional<Arrival> between(RaysOfHistory& rays, Miss low, Miss high) {
 std::optional<Arrival> followed_path(const RayTracer& tracer, const Arrival& path,
                                      double source_depth, double receiver_depth, double range) {
   RaysOfHistory rays(tracer, path, source_depth, receiver_depth, range);
-  double angle = path.launch_elevation;
+  double angle = path.launch_elevation, reach = least_reach;
   Miss before{angle, 1e300};
   for (int step = 0; step < most_steps; ++step) {
     const auto miss = rays.miss(angle);
     if (!miss) return {};
     if (rays.meets(*miss)) return rays.arrival();
+    if (step == 0) reach = std::max(reach, 4.0 * rays.angle_of(*miss));
     // A step that did not bring it near was not the curve's: over curvilinear facets q is that of
     // the turning tangent.
     double turn = rays.step(*miss);
@@ -135,7 +144,7 @@ std::optional<Arrival> followed_path(const RayTracer& tracer, const Arrival& pat
       turn = -*miss * (angle - before.angle) / (*miss - before.miss);
     before = {angle, *miss};
     angle += turn;
-    if (!(std::abs(angle - path.launch_elevation) < furthest_turn)) return {};
+    if (!(std::abs(angle - path.launch_elevation) < reach)) return {};
   }
   return {};
 }

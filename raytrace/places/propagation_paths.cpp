@@ -71,8 +71,8 @@ PathLimits limits_around(std::span<const Arrival> known, PathLimits limits) {
   for (const Arrival& path : known) {
     needed.max_surface_bounces = std::max(needed.max_surface_bounces, path.surface_bounces);
     needed.max_bottom_bounces = std::max(needed.max_bottom_bounces, path.bottom_bounces);
-    needed.max_launch_angle = std::max(
-        {needed.max_launch_angle, std::abs(path.launch_elevation) + radians(1.0), radians(5.0)});
+    needed.max_launch_angle =
+        std::max({needed.max_launch_angle, std::abs(path.launch_elevation) + radians(10.0)});
   }
   limits.max_surface_bounces = std::min(limits.max_surface_bounces, needed.max_surface_bounces);
   limits.max_bottom_bounces = std::min(limits.max_bottom_bounces, needed.max_bottom_bounces);
@@ -410,14 +410,24 @@ Arrivals PropagationPaths::followed(std::span<const Arrival> known, const Vec3& 
     found.push_back(std::move(*same));
   }
   // Over rough ground some of hundreds always part: those alone are looked for, where they were.
+  // If they were loud, all are searched for.
+  constexpr double same_ray = 1e-6;  // [rad]
+  constexpr double loud = 1e-3;      // of the energy of all
+  double parted = 0.0;
   for (const Arrival* path : lost) {
-    constexpr double same_ray = 1e-6;  // [rad]
     std::optional<Arrival> same = path_beside(*tracer, *path, from.z(), to.z(), range);
     if (same && std::none_of(found.begin(), found.end(), [&](const Arrival& other) {
           return same_history(other, *same) &&
                  std::abs(other.launch_elevation - same->launch_elevation) < same_ray;
         }))
       found.push_back(std::move(*same));
+    else
+      parted += std::norm(path->amplitude);
+  }
+  if (parted > 0.0) {
+    double all = 0.0;
+    for (const Arrival& path : known) all += std::norm(path.amplitude);
+    if (parted > loud * all) return search(from, to, frequency, limits_around(known, limits));
   }
   sort_by_delay(found);
   return bounded(std::move(found), from, to, frequency, limits);

@@ -33,14 +33,17 @@ Vec3 arriving_slowness(double line, const Arrival& path, double sound_speed) {
 const Arrival* same_path(const Arrivals& arrivals, const Arrival& path, bool layered) {
   constexpr double near = radians(1.0);
   const double near_level = 1.0 - std::cos(2.0 * near);  // Δξ/ξ of a level ray turned by that
+  constexpr double near_alone = radians(10.0);           // where there is one of that history only
   const Arrival* nearest = nullptr;
-  double least = infinity;
+  double least = infinity, turn_of_nearest = infinity;
+  int of_history = 0;
   for (const Arrival& a : arrivals) {
     // Beside a caustic a ray stays what it is.
     if ((a.kind == ArrivalKind::diffracted) != (path.kind == ArrivalKind::diffracted) ||
         a.surface_bounces != path.surface_bounces || a.bottom_bounces != path.bottom_bounces ||
         a.upper_turns != path.upper_turns || a.lower_turns != path.lower_turns)
       continue;
+    ++of_history;
     const double aside = std::remainder(a.launch_deflection - path.launch_deflection, 2.0 * pi) *
                          std::cos(path.launch_elevation);
     const double turned = std::hypot(a.launch_elevation - path.launch_elevation, aside);
@@ -50,17 +53,20 @@ const Arrival* same_path(const Arrivals& arrivals, const Arrival& path, bool lay
     const bool one_way = (a.launch_elevation < 0.0) == (path.launch_elevation < 0.0);
     // Without a turn r(ξ) of a history grows with ξ: there is one such path only.
     const bool only_one = layered && one_way && path.upper_turns + path.lower_turns == 0;
-    if (!(turned < near || only_one || (layered && one_way && changed < near_level))) continue;
+    if (!(turned < (layered ? near : near_alone) || only_one ||
+          (layered && one_way && changed < near_level)))
+      continue;
     const bool other_of_pair = a.kind == ArrivalKind::caustic &&
                                path.kind == ArrivalKind::caustic && a.caustics != path.caustics;
     const double difference =
         (layered ? changed + (one_way ? 0.0 : 1.0) : turned) + (other_of_pair ? 1.0 : 0.0);
     if (difference < least) {
       least = difference;
+      turn_of_nearest = turned;
       nearest = &a;
     }
   }
-  return nearest;
+  return layered || of_history == 1 || turn_of_nearest < near ? nearest : nullptr;
 }
 
 Kinematics MovingPaths::place(const Track& track, const Vec3& offset, double time) const {

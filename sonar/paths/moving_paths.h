@@ -55,8 +55,8 @@ struct MetPath {
 /// one that is as near as that of level rays two degrees apart: a ray that leaves almost level
 /// turns by degrees, √(2Δc/c), when its end sinks by metres through a thermocline, and ξ hardly
 /// changes. Two paths of one history that leave upwards and downwards (a duct) have almost the same
-/// ξ: the direction keeps them apart. Elsewhere the nearest launch angle. Null if it is there no
-/// more.
+/// ξ: the direction keeps them apart. Elsewhere the nearest launch angle, within ten degrees if it
+/// is the only path of its history. Null if it is there no more.
 [[nodiscard]] const Arrival* same_path(const Arrivals& arrivals, const Arrival& path, bool layered);
 
 /// Finds where sound meets things that move: 7 m/s over 20 s is 144 m. Source:
@@ -64,7 +64,8 @@ struct MetPath {
 class MovingPaths {
  public:
   /// \param frequency  [Hz]   \param ping_time  since the start of the scenario [s]
-  /// \param tolerance  of a delay that the linear step below leaves [s]
+  /// \param tolerance  of a delay that the linear step below leaves, a hundredth of a radian at
+  /// most [s]
   /// \param reuse  counts the eigenrays that were known; null: nobody does
   MovingPaths(const PropagationPaths& paths, const PathLimits& limits, double frequency,
               double ping_time, double tolerance = 1e-7, Reuse* reuse = nullptr)
@@ -72,7 +73,7 @@ class MovingPaths {
         limits_(limits),
         frequency_(frequency),
         ping_time_(ping_time),
-        tolerance_(tolerance),
+        tolerance_(std::min(tolerance, 2e-3 / frequency)),
         reuse_(reuse) {}
 
   /// Eigenrays from a point, left at `start`, to where a track is when the first of them comes.
