@@ -240,7 +240,10 @@ double scatter_doppler(const Environment& ocean, double frequency) {
 }
 
 std::uint64_t scatter_history(const Arrival& path) noexcept {
-  std::uint64_t name = path.launch_elevation > 0.0 ? 1 : 0;
+  // There is one direct path, whether it goes up or down.
+  const bool direct =
+      path.surface_bounces + path.bottom_bounces + path.upper_turns + path.lower_turns == 0;
+  std::uint64_t name = !direct && path.launch_elevation > 0.0 ? 1 : 0;
   for (const int count :
        {path.surface_bounces, path.bottom_bounces, path.upper_turns, path.lower_turns})
     name = mixed(name, static_cast<std::uint64_t>(count));
