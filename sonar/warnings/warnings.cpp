@@ -492,6 +492,29 @@ std::string overlapping_records(const Scenario& scenario) {
   return text;
 }
 
+std::string coarse_rings(const Scenario& scenario) {
+  const ReverberationSettings& sea = scenario.reverberation;
+  if (!sea.enabled || !sea.ground_spacing || !(sea.surface_scatters || sea.bottom)) return "";
+  const double spacing = *sea.ground_spacing;
+  for (std::size_t t = 0; t < scenario.transmitters.size(); ++t) {
+    const Platform& platform =
+        scenario.platforms[static_cast<std::size_t>(scenario.transmitters[t].platform)];
+    const double c = speed_at(scenario, platform.track.at(0.0).position),
+                 duration = pulse_of(scenario, static_cast<int>(t)).duration;
+    if (!(2.0 * spacing > c * duration)) continue;
+    char text[320];
+    std::snprintf(
+        text, sizeof text,
+        "reverberation.ground_spacing: between rings %g m apart reverberation is received "
+        "%.3g s apart, and the pulse of transmitter %s lasts %.3g s: samples come in "
+        "bursts, and those of the first rings may differ from /levels by 10 dB and more; "
+        "at most %.3g m fills the gaps",
+        spacing, 2.0 * spacing / c, platform.name.c_str(), duration, 0.5 * c * duration);
+    return text;
+  }
+  return "";
+}
+
 std::string steered_line(const Scenario& scenario) {
   constexpr double much = 1.25;
   for (const Transmission& sent : transmissions(scenario)) {
@@ -548,16 +571,17 @@ namespace asdic::detail {
 std::vector<std::string> warnings(const Scenario& scenario) {
   const PulseFrequencies pulse = pulse_frequencies(scenario);
   std::vector<std::string> all = warnings(scenario.environment, pulse.lowest, pulse.highest);
-  add_warnings({checks::pulse_band(scenario), checks::comb_lines(scenario),
-                checks::noise_law_range(scenario), checks::noise_table_band(scenario),
-                checks::surface_scattering_range(scenario),
-                checks::reverberation_plane_waves(scenario), checks::noise_of_a_bent_line(scenario),
-                checks::noise_from_below(scenario), checks::left_out_diffraction(scenario),
-                checks::beyond_the_map(scenario), checks::wind_elsewhere(scenario),
-                checks::far_from_the_origin(scenario), checks::scattering_energy(scenario),
-                checks::planes_beside_volume(scenario), checks::echo_beside_record(scenario),
-                checks::overlapping_records(scenario), checks::steered_line(scenario)},
-               all);
+  add_warnings(
+      {checks::pulse_band(scenario), checks::comb_lines(scenario),
+       checks::noise_law_range(scenario), checks::noise_table_band(scenario),
+       checks::surface_scattering_range(scenario), checks::reverberation_plane_waves(scenario),
+       checks::noise_of_a_bent_line(scenario), checks::noise_from_below(scenario),
+       checks::left_out_diffraction(scenario), checks::beyond_the_map(scenario),
+       checks::wind_elsewhere(scenario), checks::far_from_the_origin(scenario),
+       checks::scattering_energy(scenario), checks::planes_beside_volume(scenario),
+       checks::echo_beside_record(scenario), checks::overlapping_records(scenario),
+       checks::steered_line(scenario), checks::coarse_rings(scenario)},
+      all);
   return all;
 }
 

@@ -236,8 +236,8 @@ TEST(SummaryAndSamples, ReverberationIsThatOfTheSamples) {
   }
 }
 
-// Warnings of an echo outside the record, of records that overlap, and of a line steered to
-// endfire.
+// Warnings of an echo outside the record, of records that overlap, of a line steered to endfire,
+// and of rings further apart than the pulse is long.
 TEST(SummaryAndSamples, RecordsThatLackSoundAreWarnedOf) {
   Scenario s = guide(200.0, pulses[1].settings);
   EXPECT_EQ(checks::echo_beside_record(s), "");
@@ -260,6 +260,13 @@ TEST(SummaryAndSamples, RecordsThatLackSoundAreWarnedOf) {
   EXPECT_NE(checks::overlapping_records(s), "");
   s.pings.continuous = true;
   EXPECT_EQ(checks::overlapping_records(s), "");
+  s.reverberation = {.enabled = true, .ground_spacing = 0.5};  // a pulse of 1 ms is 0.75 m
+  EXPECT_EQ(checks::coarse_rings(s), "");
+  s.reverberation.ground_spacing = 3.0;
+  EXPECT_NE(checks::coarse_rings(s).find("at most 0.75 m"), std::string::npos)
+      << checks::coarse_rings(s);
+  s.reverberation.enabled = false;
+  EXPECT_EQ(checks::coarse_rings(s), "");
 }
 
 }  // namespace
