@@ -168,6 +168,22 @@ def alike(a, b, s, share, what, phones=slice(None), part=slice(None)):
                f"of the record), at most {share:.1e}")
 
 
+def drawn_share(record):
+    """Root of the share of the energy that rough boundaries scatter, of a pair of legs.
+
+    Its parts are drawn at the reference point of the array and carried to the phones as plane waves of their directions, which
+    is right to first order. A phone alone is the reference point.
+    """
+    a = record.arrivals
+    if not a or len(a["leg"]) == 0:
+        return 0.0
+    mean, scattered = a["amplitude_real"] ** 2 + a["amplitude_imag"] ** 2, np.nan_to_num(a["scattered"])
+    left = [float(np.sum(mean[rows]) / max(np.sum((mean + scattered)[rows]), 1e-300))
+            for rows in (a["leg"] == leg for leg in (0, 1, 2)) if rows.any()]
+    ways = [math.prod(left[:2])] + left[2:]
+    return math.sqrt(max(0.0, 1.0 - min(ways)))
+
+
 def alike_in_the_mean(a, b, s, share, what):
     """The same samples, or the same paths where rough boundaries scatter about them.
 

@@ -185,6 +185,9 @@ def levels_hold_the_reverberation(s, p):
     for layer in r.get("volume", ()):
         for key in ("frozen", "coherence_time", "k_shape", "correlation_length"):
             layer.pop(key, None)
+    filled = 700.0 * s["pulse"].get("duration", 0.0)  # less than half of what the pulse is long
+    if r.get("ground_spacing", 0.0) > filled and s["pings"]["recording_duration"] < 300 * s["pulse"].get("duration", 0.0):
+        r["ground_spacing"] = filled
     s["reverberation"] = r
     s["pings"]["count"] = 6
     s["pings"]["interval"] = s["pings"]["recording_duration"] + s["pings"].get("recording_start", 0.0) + 1.0
@@ -192,6 +195,8 @@ def levels_hold_the_reverberation(s, p):
     row = record.levels.get("reverberation") if record.levels else None
     if row is None or not np.any(row):
         raise Silent("no reverberation")
+    if warned(record, "reverberation.ground_spacing"):
+        raise Silent("rings with gaps")
     power = np.mean(np.abs(record.pressure) ** 2, axis=1) * (0.5 if record.carrier is not None else 1.0)  # of phones
     held, said = float(np.mean(power)), float(np.mean(np.asarray(row, dtype=float)[..., : row.shape[-1]]))
     # Cells that count: the effective number of intervals, (Σx)²/Σx².

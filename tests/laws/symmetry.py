@@ -3,8 +3,8 @@ import math
 
 import numpy as np
 
-from law import (LAWS, Silent, alike, alike_in_the_mean, copied, db, energy, everywhere, expect, field, law, loudness,
-                 need_leg, norm, one_place, ping, plain, still, stratified, warned)
+from law import (LAWS, Silent, alike, alike_in_the_mean, copied, db, drawn_share, energy, everywhere, expect, field, law,
+                 loudness, need_leg, norm, one_place, ping, plain, still, stratified, warned)
 
 
 @law
@@ -165,7 +165,7 @@ def phone_is_itself(s, p):
                              "offset": [float(x - y) for x, y in zip(where, at)]}
     size = float(np.max(np.linalg.norm(whole.phone_position[0] - np.mean(whole.phone_position[0], axis=0), axis=1)))
     reach = float(np.min(whole.arrivals["path_length"])) if len(whole.arrivals.get("path_length", ())) else 1.0
-    share = 0.063 + 0.02 + size / max(reach, size, 1e-9)
+    share = 0.063 + 0.02 + size / max(reach, size, 1e-9) + 2.0 * drawn_share(whole)
     alike(whole, ping(alone), s, share, f"phone {phone} of {n}", phones=slice(phone, phone + 1))
 
 
@@ -179,7 +179,8 @@ def exact_is_plane(s, p):
     exact = ping(s)
     size = float(np.max(np.linalg.norm(plane.phone_position[0] - np.mean(plane.phone_position[0], axis=0), axis=1)))
     reach = float(np.min(plane.arrivals["path_length"])) if len(plane.arrivals.get("path_length", ())) else 1.0
-    alike(plane, exact, s, 0.063 + 0.02 + size / max(reach, size, 1e-9), "exact_per_phone")
+    share = 0.063 + 0.02 + size / max(reach, size, 1e-9) + 2.0 * drawn_share(plane)
+    alike(plane, exact, s, share, "exact_per_phone")
 
 
 def small_move(s, p):
