@@ -424,7 +424,7 @@ Arrivals PropagationPaths::followed(std::span<const Arrival> known, const Vec3& 
     else
       parted += std::norm(path->amplitude);
   }
-  if (parted > 0.0) {
+  if (parted > 0.0 && known.size() > 1) {  // one path alone is not worth a search
     double all = 0.0;
     for (const Arrival& path : known) all += std::norm(path.amplitude);
     if (parted > loud * all) return search(from, to, frequency, limits_around(known, limits));
