@@ -58,7 +58,9 @@ AmbientNoise::AmbientNoise(const Scenario& scenario, const PropagationPaths& pat
   if (!settings_.any()) return;
   const double low = carrier_ > 0.0 ? std::max(0.0, carrier_ - 0.5 * rate_) : 0.0;
   recorded_power_ = noise_power(settings_, low, carrier_ + 0.5 * rate_);
-  if (settings_.plain()) return;
+  // A baseband that reaches below 0 Hz has noise above it alone.
+  white_ = settings_.plain() && (carrier_ == 0.0 || carrier_ >= 0.5 * rate_);
+  if (white_) return;
   for (std::size_t a = 0; a < scenario.arrays.size(); ++a) {
     first_channels_.push_back(first_channel(scenario, static_cast<int>(a)));
     const double c = paths.speed_at(motions_[a].at(0.0).position);
@@ -84,7 +86,7 @@ void AmbientNoise::add(const RecordSamples& record, std::int64_t later) const {
   // Pings of a stream leave at whole samples: the first sample of this part, counted from the
   // scenario's start.
   const std::int64_t first = (continuous_ ? std::llround(record.start_time * rate_) : 0) + later;
-  if (settings_.plain()) {
+  if (white_) {
     const double level = *settings_.flat_level_db();
     const double variance = record.recording.is_complex() ? white_baseband_variance(level, rate_)
                                                           : white_noise_variance(level, rate_);

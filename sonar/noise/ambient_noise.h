@@ -33,6 +33,7 @@ class AmbientNoise {
   const NoiseSettings& settings_;
   std::uint64_t seed_;
   bool continuous_;
+  bool white_ = false;  // independent samples are all the noise
   double rate_, carrier_, recorded_power_ = 0.0;
   std::vector<ArrayMotion> motions_;         // [arrays]
   std::vector<BlockNoise> arrays_;           // [arrays], empty for plain noise
