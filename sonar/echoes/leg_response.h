@@ -16,8 +16,8 @@ namespace asdic::detail {
 inline constexpr std::size_t most_wave_frequencies = 65;
 /// Largest number for a leg by rays, for which only the boundaries' reflection is computed.
 inline constexpr std::size_t most_ray_frequencies = 129;
-/// Tolerated error of the polynomials between those frequencies, over the largest value: −48 dB.
-inline constexpr double leg_response_error = 4e-3;
+/// Tolerated error of the polynomials between those frequencies, over the largest value: −38 dB.
+inline constexpr double leg_response_error = 1.2e-2;
 
 /// Responses at a few frequencies of a band, interpolated by polynomials.
 struct SampledResponse {

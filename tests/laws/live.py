@@ -91,7 +91,7 @@ def duration(s):
 def longer_record(s, p):
     """A longer record begins with the same samples. "auto" may follow more bounces: 0.05 dB.
 
-    Where reflection depends on frequency, legs are sampled over the band to 4e-3 (sonar/echoes/leg_response.h).
+    Where reflection depends on frequency, legs are sampled over the band to 1.2e-2 (sonar/echoes/leg_response.h).
     """
     s = plain(s)
     first = ping(s)
