@@ -412,7 +412,7 @@ Arrivals PropagationPaths::followed(std::span<const Arrival> known, const Vec3& 
   // Over rough ground some of hundreds always part: those alone are looked for, where they were.
   // If they were loud, all are searched for.
   constexpr double same_ray = 1e-6;  // [rad]
-  constexpr double loud = 1e-3;      // of the energy of all
+  constexpr double loud = 1e-2;      // of the energy of all
   double parted = 0.0;
   for (const Arrival* path : lost) {
     std::optional<Arrival> same = path_beside(*tracer, *path, from.z(), to.z(), range);

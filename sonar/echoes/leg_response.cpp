@@ -94,7 +94,7 @@ std::vector<std::complex<double>> SampledResponse::at(double frequency) const {
 }
 
 SampledResponse sampled_response(
-    double centre, double half_width, double error, std::size_t most,
+    double centre, double half_width, const ResponseError& error, std::size_t most,
     const std::function<std::vector<std::complex<double>>(double)>& responses) {
   const auto place = [&](std::size_t k, std::size_t cells) {
     return centre - half_width * std::cos(pi * static_cast<double>(k) / static_cast<double>(cells));
@@ -134,7 +134,7 @@ SampledResponse sampled_response(
     };
     const std::size_t few = std::max<std::size_t>(1, cells / 8);  // for four new values, or all
     known.error = off(few | 1, 2 * few);
-    if (known.error <= error) return known;
+    if (known.error <= (cells < 64 ? error.few : error.many)) return known;
     finer.error = std::max(known.error, off(1, 2));
     known = std::move(finer);
     if (2 * cells + 1 > most) return known;
@@ -208,7 +208,7 @@ double response_half_band(const Pulse& pulse) noexcept {
 
 SampledResponse leg_response(const PropagationPaths& paths, const MetLeg& leg, double centre,
                              double half_width) {
-  return sampled_response(centre, half_width, leg_response_error,
+  return sampled_response(centre, half_width, ResponseError{},
                           leg.by_waves() ? most_wave_frequencies : most_ray_frequencies,
                           [&](double f) {
                             std::vector<std::complex<double>> there = amplitudes_at(paths, leg, f);

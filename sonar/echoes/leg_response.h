@@ -16,8 +16,12 @@ namespace asdic::detail {
 inline constexpr std::size_t most_wave_frequencies = 65;
 /// Largest number for a leg by rays, for which only the boundaries' reflection is computed.
 inline constexpr std::size_t most_ray_frequencies = 129;
-/// Tolerated error of the polynomials between those frequencies, over the largest value: −38 dB.
-inline constexpr double leg_response_error = 1.2e-2;
+/// Tolerated error of the polynomials between frequencies, over the largest value: of a few, and of
+/// 33 and more, each of which costs as much as the centre.
+struct ResponseError {
+  double few = 4e-3;     ///< −48 dB
+  double many = 1.2e-2;  ///< −38 dB
+};
 
 /// Responses at a few frequencies of a band, interpolated by polynomials.
 struct SampledResponse {
@@ -33,7 +37,7 @@ struct SampledResponse {
 /// of the next ones to `error`, or there are `most`.   \param responses  functions of a frequency
 /// [Hz]
 [[nodiscard]] SampledResponse sampled_response(
-    double centre, double half_width, double error, std::size_t most,
+    double centre, double half_width, const ResponseError& error, std::size_t most,
     const std::function<std::vector<std::complex<double>>(double)>& responses);
 
 /// The paths of a leg between two places, as functions of frequency.

@@ -1,6 +1,7 @@
 #include "sonar/echoes/sparse_sound.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <iterator>
@@ -94,49 +95,69 @@ class WideBand {
         }) {
     // The number of nodes is that for absorption and the transmitter's pattern, plus the degree of
     // the legs.
-    const double nepers = 0.5 * longest *
-                          std::abs(nepers_per_metre(context, centre_ + half_width_) -
-                                   nepers_per_metre(context, std::max(1.0, centre_ - half_width_)));
-    nodes_ = band_nodes(centre_, half_width_, nepers,
-                        pattern_at(context, projector, centre_).longest_delay());
+    nepers_ = 0.5 * longest *
+              std::abs(nepers_per_metre(context, centre_ + half_width_) -
+                       nepers_per_metre(context, std::max(1.0, centre_ - half_width_)));
     std::size_t degree = 0;
     for (const EchoPath& path : paths) {
       std::size_t sum = 0;
-      for (const PathOnLeg& on : path.legs)
-        if (const SampledResponse* leg = legs_.of(on)) sum += leg->values.size() - 1;
+      for (std::size_t i = 0; i < path.legs.size(); ++i)
+        if (const SampledResponse* leg = legs_.of(path.legs[i])) {
+          sum += leg->values.size() - 1;
+          degrees_[i] = std::max(degrees_[i], leg->values.size() - 1);
+        }
       degree = std::max(degree, sum);
     }
-    if (degree > 0)
-      nodes_ = chebyshev_nodes(centre_, half_width_, nodes_.frequencies.size() + degree);
+    nodes_ = nodes_for(nepers_, longest_delay(), degree);
   }
 
   [[nodiscard]] const BandNodes& nodes() const noexcept { return nodes_; }
   [[nodiscard]] const ChangingLegs<SampledResponse>& legs() const noexcept { return legs_; }
-  [[nodiscard]] BandPart part(std::size_t k) const {
-    BandPart part = band_part(context_, projector_, std::max(1.0, nodes_.frequencies[k]));
-    part.filter = [nodes = nodes_, k](double beside) {
+  [[nodiscard]] BandPart part(std::size_t k) const { return part(nodes_, k); }
+  /// Parts for one leg by itself. \param leg  0: the way there, with the transmitter's pattern;
+  /// 1: the way back
+  [[nodiscard]] std::vector<BandPart> parts_of(std::size_t leg) const {
+    const BandNodes nodes =
+        nodes_for(0.5 * nepers_, leg == 0 ? longest_delay() : 0.0, degrees_[leg]);
+    std::vector<BandPart> parts;
+    for (std::size_t k = 0; k < nodes.frequencies.size(); ++k) parts.push_back(part(nodes, k));
+    return parts;
+  }
+
+ private:
+  [[nodiscard]] double longest_delay() const {
+    return pattern_at(context_, projector_, centre_).longest_delay();
+  }
+  /// Nodes for absorption and a pattern, and as many more as the degree of the legs.
+  [[nodiscard]] BandNodes nodes_for(double nepers, double delay, std::size_t degree) const {
+    const BandNodes nodes = band_nodes(centre_, half_width_, nepers, delay);
+    return degree == 0 ? nodes
+                       : chebyshev_nodes(centre_, half_width_, nodes.frequencies.size() + degree);
+  }
+  [[nodiscard]] BandPart part(const BandNodes& nodes, std::size_t k) const {
+    BandPart part = band_part(context_, projector_, std::max(1.0, nodes.frequencies[k]));
+    part.filter = [nodes, k](double beside) {
       return nodes.basis(k, nodes.centre + std::clamp(beside, -nodes.half_width, nodes.half_width));
     };
     return part;
   }
 
- private:
   const EchoContext& context_;
   const Transmitter& projector_;
   double centre_, half_width_;
   ChangingLegs<SampledResponse> legs_;
+  double nepers_ = 0.0;                      // half of what losses change across the band
+  std::array<std::size_t, 2> degrees_ = {};  // of the polynomials of either leg
   BandNodes nodes_;
 };
 
 }  // namespace
 
-std::vector<BandPart> band_parts(const EchoContext& context, const Transmitter& projector,
-                                 std::span<const EchoPath> paths, double longest,
-                                 const Recording& recording, double max_doppler) {
+TwoStepBand two_step_band(const EchoContext& context, const Transmitter& projector,
+                          std::span<const EchoPath> paths, double longest,
+                          const Recording& recording, double max_doppler) {
   const WideBand band(context, projector, paths, longest, recording, max_doppler);
-  std::vector<BandPart> parts;
-  for (std::size_t k = 0; k < band.nodes().frequencies.size(); ++k) parts.push_back(band.part(k));
-  return parts;
+  return {.out = band.parts_of(0), .home = band.parts_of(1)};
 }
 
 Baseband narrow_band_sound(const Synthesizer& synthesizer, std::span<const EchoPath> paths,

@@ -45,12 +45,17 @@ struct SparseSound {
 [[nodiscard]] SparseSound by_band(const EchoContext& context, const Transmitter& projector,
                                   std::vector<EchoPath> paths);
 
-/// Parts of a pulse's band by which echoes along paths like these are received.   \param longest
-/// longest path there and back [m]
-[[nodiscard]] std::vector<BandPart> band_parts(const EchoContext& context,
-                                               const Transmitter& projector,
-                                               std::span<const EchoPath> paths, double longest,
-                                               const Recording& recording, double max_doppler);
+/// Parts of a pulse's band for each leg of an echo by itself.
+struct TwoStepBand {
+  std::vector<BandPart> out;   ///< of the way there; empty: one amplitude serves the whole band
+  std::vector<BandPart> home;  ///< of the way back, for the sound at the target
+};
+
+/// Parts by which echoes along paths like these are received.   \param longest  longest path there
+/// and back [m]
+[[nodiscard]] TwoStepBand two_step_band(const EchoContext& context, const Transmitter& projector,
+                                        std::span<const EchoPath> paths, double longest,
+                                        const Recording& recording, double max_doppler);
 
 /// Echoes and direct blasts at the phones of an array, with the amplitudes at the pulse's centre
 /// frequency.   \param phones  [n] from the array's reference point [m]

@@ -8,11 +8,13 @@
 
 #include "core/geometry.h"
 #include "core/mixed_bits.h"
+#include "sonar/echoes/leg_response.h"
 #include "sonar/echoes/one_leg.h"
 #include "sonar/echoes/target_response.h"
 #include "sonar/paths/moving_paths.h"
 #include "sonar/scenario/carried.h"
 #include "sonar/scenario/sampling.h"
+#include "sonar/signal/fft.h"
 #include "sonar/synthesis/sound_synthesis.h"
 
 namespace asdic::detail {
@@ -162,9 +164,8 @@ class MovingLeg {
 
 class TwoSteps {
  public:
-  /// \param part  part of the band; null: amplitudes at the centre serve the whole band
   TwoSteps(const EchoContext& context, const ManyEchoes& many, const TwoStepReceivers& receivers,
-           const Recording& recording, double max_doppler, const BandPart* part)
+           const Recording& recording, double max_doppler, const TwoStepBand& band)
       : context_(context),
         geometry_(context.geometry),
         scenario_(context.scenario()),
@@ -174,23 +175,24 @@ class TwoSteps {
         recording_(recording),
         max_doppler_(max_doppler),
         latest_(end_of_record(scenario_)),
-        part_(part),
-        moving_(context.paths, limits_of(scenario_.propagation, many.followed),
-                part != nullptr ? part->frequency : context.frequency, geometry_.time(), 1e-7,
-                context.reuse),
+        limits_(limits_of(scenario_.propagation, many.followed)),
+        band_(band),
         places_(target_.highlights.empty() ? 1 : target_.highlights.size()) {}
 
   Baseband receive() const {
-    const Synthesizer whole(*context_.pulse, recording_, max_doppler_,
-                            part_ != nullptr ? part_->filter : std::function<double(double)>());
-    const Sound pulse{.wave = filtered_pulse(whole), .middle = 0.5 * context_.pulse->duration()};
-    const std::vector<Sound> struck = at_target(pulse);
+    const Baseband there = at_target();
     Baseband received;
-    if (!struck.empty()) add(struck, received);
+    if (there.channels == 0) return received;
+    if (band_.home.empty()) add(sounds_of(there), context_.frequency, received);
+    for (const BandPart& part : band_.home)
+      add(sounds_of(through(there, part.filter)), part.frequency, received);
     return received;
   }
 
  private:
+  [[nodiscard]] MovingPaths paths_at(double frequency) const {
+    return {context_.paths, limits_, frequency, geometry_.time(), 1e-7, context_.reuse};
+  }
   [[nodiscard]] double highest() const {
     return context_.pulse->centre_frequency() + 0.5 * context_.pulse->bandwidth_40db();
   }
@@ -269,20 +271,22 @@ class TwoSteps {
     return r;
   }
 
-  /// The sound that strikes the target's places. \return [places] alike but for what they are;
-  /// none: nothing strikes it in time
-  std::vector<Sound> at_target(const Sound& pulse) const {
+  struct Piece {
+    BandLimitedPulse wave;
+    Returns returns;
+  };
+  /// Adds what carries the pulse to the target's places.
+  /// \param part  of the pulse's band; null: amplitudes at the centre serve all of it
+  void carry(const BandPart* part, std::vector<Piece>& pieces) const {
+    const Synthesizer whole(*context_.pulse, recording_, max_doppler_,
+                            part != nullptr ? part->filter : std::function<double(double)>());
+    const Sound pulse{.wave = filtered_pulse(whole), .middle = 0.5 * context_.pulse->duration()};
+    const MovingPaths moving = paths_at(part != nullptr ? part->frequency : context_.frequency);
     MovingLeg leg(
-        context_, moving_, [&](double since) { return geometry_.source_at(since); },
+        context_, moving, [&](double since) { return geometry_.source_at(since); },
         {.track = target_.track},
         mixed(static_cast<std::uint64_t>(geometry_.sent().transmitter),
               mixed(1, target_identity(scenario_, index_))));
-    struct Piece {
-      BandLimitedPulse wave;
-      Returns returns;
-    };
-    std::vector<Piece> pieces;
-    double first = infinity, last = -infinity;
     for_each_piece({pulse},
                    cuts({&leg, 1}, pulse, course_changes(geometry_.sender().track),
                         !course_changes(target_.track).empty(), highest(), 2.0 * body_radius()),
@@ -292,9 +296,7 @@ class TwoSteps {
                      for (const LegPath& path : leg.at(moment)) {
                        Return r = leaving_at(path, middle, moment);
                        if (r.delay > latest_) continue;
-                       r.amplitude = amplitude(path.received, true);
-                       first = std::min(first, r.delay);
-                       last = std::max(last, r.delay);
+                       r.amplitude = sent_along(path.received, part);
                        for (std::size_t p = 0; p < places_; ++p) {
                          r.channel = static_cast<int>(p);
                          Return& one = piece.returns.emplace_back(r);
@@ -303,11 +305,25 @@ class TwoSteps {
                        }
                      }
                    });
+  }
+
+  /// The sound that strikes the target's places. \return [places]; without channels: nothing
+  /// strikes it in time
+  Baseband at_target() const {
+    std::vector<Piece> pieces;
+    if (band_.out.empty()) carry(nullptr, pieces);
+    for (const BandPart& part : band_.out) carry(&part, pieces);
+    double first = infinity, last = -infinity, longest = 0.0;
+    for (const Piece& piece : pieces) {
+      longest = std::max(longest, piece.wave.half_duration() / (1.0 - max_doppler_));
+      for (const Return& r : piece.returns) {
+        first = std::min(first, r.delay);
+        last = std::max(last, r.delay);
+      }
+    }
     if (!(first <= last)) return {};
-    double longest = body_radius() / 1000.0;
-    for (const Piece& piece : pieces)
-      longest = std::max(
-          longest, piece.wave.half_duration() / (1.0 - max_doppler_) + body_radius() / 1000.0);
+    longest += body_radius() / 1000.0;
+    if (!band_.home.empty()) longest += longest_response();
     Recording there = recording_;
     there.start = first - longest;
     there.samples = static_cast<std::size_t>(
@@ -316,7 +332,33 @@ class TwoSteps {
     Baseband all;
     for (const Piece& piece : pieces)
       add_to(all, baseband_of(piece.wave, there, max_doppler_, piece.returns, no_offsets));
-    return sounds_of(all);
+    return all;
+  }
+
+  /// Time by which what a response over the band adds is over [s].
+  [[nodiscard]] double longest_response() const {
+    return 32.0 / response_half_band(*context_.pulse);
+  }
+
+  /// All channels through a filter of the band. \param filter  over the frequency from the pulse's
+  /// centre [Hz]
+  Baseband through(Baseband all, const std::function<double(double)>& filter) const {
+    const auto n = static_cast<std::ptrdiff_t>(all.samples);
+    const ComplexFft<float> fft(all.samples);
+    std::vector<float> factors;
+    for (std::ptrdiff_t i = 0; i < n; ++i) {
+      const double f = all.carrier + static_cast<double>(2 * i < n ? i : i - n) * all.sample_rate /
+                                         static_cast<double>(n);
+      factors.push_back(static_cast<float>(filter(f - context_.pulse->centre_frequency()) /
+                                           static_cast<double>(n)));
+    }
+    for (std::size_t channel = 0; channel < all.channels; ++channel) {
+      std::complex<float>* const row = all.values.data() + channel * all.samples;
+      fft.forward(row);
+      for (std::size_t i = 0; i < all.samples; ++i) row[i] *= factors[i];
+      fft.inverse(row);
+    }
+    return all;
   }
 
   /// What was synthesised, channel by channel, as sounds of peak 1.
@@ -348,7 +390,9 @@ class TwoSteps {
 
   /// Adds what is received of the sounds at the target: by paths of each phone's own, or by those
   /// of the reference point.
-  void add(const std::vector<Sound>& struck, Baseband& received) const {
+  void add(const std::vector<Sound>& struck, double frequency, Baseband& received) const {
+    if (struck.empty()) return;
+    const MovingPaths moving = paths_at(frequency);
     const int array = context_.array;
     const bool own = receivers_.by_themselves;
     const std::uint64_t ends =
@@ -356,7 +400,7 @@ class TwoSteps {
     std::vector<MovingLeg> legs;
     for (std::size_t n = 0; n < (own ? receivers_.phones.size() : 1); ++n)
       legs.emplace_back(
-          context_, moving_, [&](double since) { return target_at(since); },
+          context_, moving, [&](double since) { return target_at(since); },
           geometry_.receiver(array, own ? static_cast<int>(n) : -1), ends);
     for_each_piece(
         struck,
@@ -377,7 +421,7 @@ class TwoSteps {
                 Return r = leaving_at(path, middle, moment);
                 r.delay += path.lag.dot(glint.offset) - r.slowness.dot(x);
                 r.amplitude =
-                    amplitude(path.received, false) * glint.amplitude * struck[place].scale;
+                    path.received.response.without_pattern * glint.amplitude * struck[place].scale;
                 r.channel = own ? static_cast<int>(n) : Return::all_channels;
                 of_place[place].push_back(r);
               }
@@ -398,12 +442,11 @@ class TwoSteps {
                   slowness_vector(home, 0.0, 1.0), geometry_.time() + since);
   }
 
-  /// \param sent  by the transmitter
-  [[nodiscard]] std::complex<double> amplitude(const EchoPath& path, bool sent) const {
-    if (!sent) return path.response.without_pattern;
-    if (part_ == nullptr) return path.received.amplitude;
+  /// Amplitude of a path with the transmitter's pattern.
+  static std::complex<double> sent_along(const EchoPath& path, const BandPart* part) {
+    if (part == nullptr) return path.received.amplitude;
     const PathResponse& response = path.response;
-    return response.without_pattern * part_->pattern.towards(response.bearing, response.elevation);
+    return response.without_pattern * part->pattern.towards(response.bearing, response.elevation);
   }
 
   const EchoContext& context_;
@@ -414,28 +457,22 @@ class TwoSteps {
   TwoStepReceivers receivers_;
   Recording recording_;
   double max_doppler_;
-  double latest_;         // end of the record [s]
-  const BandPart* part_;  // null: amplitudes at the centre serve the band
-  MovingPaths moving_;    // at the part's frequency
-  std::size_t places_;    // number of the target's highlights, or 1
+  double latest_;  // end of the record [s]
+  PathLimits limits_;
+  const TwoStepBand& band_;
+  std::size_t places_;  // number of the target's highlights, or 1
 };
 
 }  // namespace
 
 Baseband two_step_echo(const EchoContext& context, const ManyEchoes& many,
                        const TwoStepReceivers& receivers, const Recording& recording,
-                       double max_doppler, std::span<const BandPart> band) {
-  const auto receive = [&](const BandPart* part) {
-    return TwoSteps(context, many, receivers, recording, max_doppler, part).receive();
-  };
-  if (band.empty()) return receive(nullptr);
-  Baseband all;
-  for (const BandPart& part : band) add_to(all, receive(&part));
-  return all;
+                       double max_doppler, const TwoStepBand& band) {
+  return TwoSteps(context, many, receivers, recording, max_doppler, band).receive();
 }
 
 double two_step_peak(const EchoContext& context, const ManyEchoes& many, const Recording& recording,
-                     double max_doppler, std::span<const BandPart> band) {
+                     double max_doppler, const TwoStepBand& band) {
   const std::vector<Vec3> one = {Vec3::Zero()};
   const bool phone = context.scenario().propagation.exact_per_phone;
   std::vector<Vec3> received_at = one;

@@ -23,16 +23,16 @@ struct TwoStepReceivers {
 /// path). What rough boundaries scatter is drawn for each leg by itself.
 /// Source: docs/theory/echoes.md, "Many paths"
 /// \param many  as target_echoes() found them   \param followed  bounces off either boundary
-/// \param band  band_parts(); empty: amplitudes at the centre serve the whole band
+/// \param band  two_step_band(); empty: amplitudes at the centre serve the whole band
 /// \return [phones] over the pulse's peak at 1 m
 [[nodiscard]] Baseband two_step_echo(const EchoContext& context, const ManyEchoes& many,
                                      const TwoStepReceivers& receivers, const Recording& recording,
-                                     double max_doppler, std::span<const BandPart> band = {});
+                                     double max_doppler, const TwoStepBand& band = {});
 
 /// The largest envelope at the array's reference point (at its first phone, where every phone has
 /// paths of its own by the scenario's wish), over the pulse's peak at 1 m.
 [[nodiscard]] double two_step_peak(const EchoContext& context, const ManyEchoes& many,
                                    const Recording& recording, double max_doppler,
-                                   std::span<const BandPart> band = {});
+                                   const TwoStepBand& band = {});
 
 }  // namespace asdic::detail

@@ -228,13 +228,13 @@ static std::vector<std::pair<double, double>> times_of(const Pulse& pulse,
   return together;
 }
 
-std::vector<BandPart> PingSimulator::band_of(const EchoContext& context, const Emission& emission,
-                                             const PingRecord& record,
-                                             std::span<const EchoPath> loudest, double last) const {
+TwoStepBand PingSimulator::band_of(const EchoContext& context, const Emission& emission,
+                                   const PingRecord& record, std::span<const EchoPath> loudest,
+                                   double last) const {
   if (!across_the_band(context, emission.projector, loudest)) return {};
-  return band_parts(context, emission.projector, loudest,
-                    1.1 * paths_->speed_at(record.platform.position) * last, record.recording,
-                    max_doppler_);
+  return two_step_band(context, emission.projector, loudest,
+                       1.1 * paths_->speed_at(record.platform.position) * last, record.recording,
+                       max_doppler_);
 }
 
 double PingSimulator::peak_of(const Emission& emission, int array, std::span<const EchoPath> echoes,
@@ -280,7 +280,7 @@ void PingSimulator::add_many_echoes(const EchoContext& context, const Emission& 
                  [&](const EchoPath& echo) {
                    return echo.target == many.target && echo.array == many.array;
                  });
-    const std::vector<BandPart> band = band_of(context, emission, record, loudest, many.last);
+    const TwoStepBand band = band_of(context, emission, record, loudest, many.last);
     const Recording part = around(many, context, emission.pulse, record.recording);
     if (part.samples == 0) continue;
     const Baseband more =

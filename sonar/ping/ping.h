@@ -22,7 +22,7 @@
 
 namespace asdic::detail {
 
-struct BandPart;
+struct TwoStepBand;
 
 /// Some of the samples of a record.
 struct SampleRange {
@@ -159,9 +159,9 @@ class PingSimulator {
   /// Parts of the pulse's band for echoes of many paths; empty: amplitudes at the centre serve the
   /// whole band.
   /// \param loudest  the loudest of these echoes   \param last  time of the last one [s]
-  [[nodiscard]] std::vector<BandPart> band_of(const EchoContext& context, const Emission& emission,
-                                              const PingRecord& record,
-                                              std::span<const EchoPath> loudest, double last) const;
+  [[nodiscard]] TwoStepBand band_of(const EchoContext& context, const Emission& emission,
+                                    const PingRecord& record, std::span<const EchoPath> loudest,
+                                    double last) const;
   void add_many_echoes(const EchoContext& context, const Emission& emission,
                        std::span<const Vec3> phones, const PingRecord& record,
                        Baseband& received) const;

@@ -181,7 +181,7 @@ TEST(Diffraction, AWideBandHasTheWavesAtEveryFrequency) {
 // Where it changes faster than frequencies are computed, the number says so.
 TEST(Diffraction, AResponseIsSampledAsOftenAsItTurns) {
   const auto of_delay = [](double seconds) {
-    return sampled_response(500.0, 100.0, 1e-3, 33, [&](double f) {
+    return sampled_response(500.0, 100.0, {1e-3, 1e-3}, 33, [&](double f) {
       return std::vector{1.0 + std::polar(0.5, 2.0 * pi * f * seconds)};
     });
   };

@@ -96,10 +96,10 @@ Received receive(const Scenario& s, std::size_t most_pairs) {
       wide ? wide_band_sound(context, s.transmitters[0], gridded, phones, recording, max_doppler)
            : narrow_band_sound(synthesizer, gridded, phones);
   if (const auto& many = received.echoes.many) {
-    std::vector<BandPart> parts;
+    TwoStepBand parts;
     if (wide)
-      parts = band_parts(context, s.transmitters[0], received.echoes.echoes, c * many->last,
-                         recording, max_doppler);
+      parts = two_step_band(context, s.transmitters[0], received.echoes.echoes, c * many->last,
+                            recording, max_doppler);
     const Baseband more =
         two_step_echo(context, *many, {phones, many->at_phones}, recording, max_doppler, parts);
     if (more.channels > 0) add_resampled(more, received.sound);
