@@ -1,5 +1,7 @@
 #include "core/propagation_memory.h"
 
+#include <algorithm>
+
 namespace asdic::detail {
 
 std::size_t ExactKey::hash() const noexcept {
@@ -15,7 +17,8 @@ PropagationMemory::Value PropagationMemory::recall(const ExactKey& key) {
   const std::scoped_lock lock(lock_);
   const auto place = places_.find(key);
   if (place == places_.end()) return nullptr;
-  used_.splice(used_.begin(), used_, place->second);
+  std::list<Entry>& used = shelf_of(key).used;
+  used.splice(used.begin(), used, place->second);
   place->second->ping = ping_;
   return place->second->value;
 }
@@ -26,9 +29,10 @@ PropagationMemory::Value PropagationMemory::store(const ExactKey& key, Value val
   const std::size_t all = bytes + 2 * key.bytes() + sizeof(Entry) + 64;
   const std::scoped_lock lock(lock_);
   if (const auto place = places_.find(key); place != places_.end()) return place->second->value;
-  used_.push_front({key, value, all, ping_});
-  places_.emplace(key, used_.begin());
-  bytes_ += all;
+  Shelf& shelf = shelf_of(key);
+  shelf.used.push_front({key, value, all, ping_});
+  places_.emplace(key, shelf.used.begin());
+  shelf.bytes += all;
   forget();
   return value;
 }
@@ -38,13 +42,13 @@ void PropagationMemory::charge(const ExactKey& key, std::size_t bytes) {
   const auto place = places_.find(key);
   if (place == places_.end()) return;
   place->second->bytes += bytes;
-  bytes_ += bytes;
+  shelf_of(key).bytes += bytes;
   forget();
 }
 
 std::size_t PropagationMemory::bytes() const {
   const std::scoped_lock lock(lock_);
-  return bytes_;
+  return legs_.bytes + others_.bytes;
 }
 
 void PropagationMemory::next_ping() {
@@ -55,10 +59,17 @@ void PropagationMemory::next_ping() {
 
 /// Those in use stay alive with those who use them.
 void PropagationMemory::forget() {
-  while (!used_.empty() && (bytes_ > most_bytes_ || ping_ - used_.back().ping > most_pings_)) {
-    bytes_ -= used_.back().bytes;
-    places_.erase(used_.back().key);
-    used_.pop_back();
+  const std::size_t of_legs = most_bytes_ / 3;
+  forget(legs_, of_legs);
+  forget(others_, most_bytes_ - std::min(of_legs, legs_.bytes));
+}
+
+void PropagationMemory::forget(Shelf& shelf, std::size_t most_bytes) {
+  while (!shelf.used.empty() &&
+         (shelf.bytes > most_bytes || ping_ - shelf.used.back().ping > most_pings_)) {
+    shelf.bytes -= shelf.used.back().bytes;
+    places_.erase(shelf.used.back().key);
+    shelf.used.pop_back();
   }
 }
 

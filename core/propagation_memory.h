@@ -103,13 +103,15 @@ class ExactKey {
   [[nodiscard]] bool operator==(const ExactKey&) const = default;
   [[nodiscard]] std::size_t hash() const noexcept;
   [[nodiscard]] std::size_t bytes() const noexcept { return words_.capacity() * 8; }
+  [[nodiscard]] Kept kind() const noexcept { return static_cast<Kept>(words_.front()); }
 
  private:
   std::vector<std::uint64_t> words_;
 };
 
 /// What propagation has found, by exact key, within a bound on bytes: what was used longest ago is
-/// forgotten first. Shared by threads.
+/// forgotten first. Legs have a third of the bytes at most, because ends that move leave
+/// thousands of them behind, which would push out what every ping uses again. Shared by threads.
 class PropagationMemory {
  public:
   static constexpr std::uint64_t for_ever = std::numeric_limits<std::uint64_t>::max();
@@ -163,14 +165,24 @@ class PropagationMemory {
   };
   [[nodiscard]] Value recall(const ExactKey& key);
   Value store(const ExactKey& key, Value value, std::size_t bytes);
+  struct Shelf {
+    std::list<Entry> used = {};  // the latest first
+    std::size_t bytes = 0;
+  };
+  [[nodiscard]] static bool is_leg(const ExactKey& key) noexcept {
+    return key.kind() == Kept::legs || key.kind() == Kept::followed_legs;
+  }
+  [[nodiscard]] Shelf& shelf_of(const ExactKey& key) noexcept {
+    return is_leg(key) ? legs_ : others_;
+  }
   void forget();
+  void forget(Shelf& shelf, std::size_t most_bytes);
 
   const std::size_t most_bytes_;
   const std::uint64_t most_pings_;
   mutable std::mutex lock_;
-  std::list<Entry> used_;  // the latest first
+  Shelf legs_, others_;
   std::unordered_map<ExactKey, std::list<Entry>::iterator, Hash> places_;
-  std::size_t bytes_ = 0;
   std::uint64_t ping_ = 0;
   std::atomic<std::size_t> ended_searches_ = 0;
 };

@@ -9,21 +9,21 @@
 namespace asdic::detail {
 namespace {
 
-ExactKey place(int x) { return ExactKey(Kept::legs, 0).add(x); }
+ExactKey place(int x, Kept kind) { return ExactKey(kind, 0).add(x); }
 
 /// \param bytes  of the value; the entry itself takes some 200
-void put(PropagationMemory& memory, int x, std::size_t bytes) {
+void put(PropagationMemory& memory, int x, std::size_t bytes, Kept kind = Kept::slice) {
   const auto found = memory.remember(
-      place(x), [&] { return std::make_shared<int>(x); }, [&](int) { return bytes; });
+      place(x, kind), [&] { return std::make_shared<int>(x); }, [&](int) { return bytes; });
   EXPECT_EQ(*found, x);
 }
 
 /// Whether it need not be made again.
-bool keeps(PropagationMemory& memory, int x) {
+bool keeps(PropagationMemory& memory, int x, Kept kind = Kept::slice) {
   struct Made {};
   const auto make = []() -> std::shared_ptr<int> { throw Made(); };
   try {
-    return *memory.remember(place(x), make, [](int) { return std::size_t{0}; }) == x;
+    return *memory.remember(place(x, kind), make, [](int) { return std::size_t{0}; }) == x;
   } catch (const Made&) {
     return false;
   }
@@ -38,6 +38,17 @@ TEST(PropagationMemory, ForgetsWhatWasUsedLongestAgoBeyondItsBytes) {
   EXPECT_FALSE(keeps(memory, 1));
   EXPECT_TRUE(keeps(memory, 2));
   EXPECT_LE(memory.bytes(), 2500U);
+}
+
+// Ends that move leave thousands of legs behind, which take a third at most.
+TEST(PropagationMemory, LegsDoNotPushOutTheRest) {
+  PropagationMemory memory(100'000);
+  put(memory, 0, 60'000);
+  for (int x = 0; x < 200; ++x) put(memory, x, 800, Kept::followed_legs);
+  EXPECT_TRUE(keeps(memory, 0));
+  EXPECT_TRUE(keeps(memory, 199, Kept::followed_legs));
+  EXPECT_FALSE(keeps(memory, 100, Kept::followed_legs));
+  EXPECT_LE(memory.bytes(), 100'000U);
 }
 
 // A platform under way receives each ping from a place of its own: without an end a sequence of
