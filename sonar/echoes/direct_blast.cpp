@@ -70,7 +70,7 @@ std::optional<DelayCurve> curve_of(const EchoContext& context, const Kinematics&
     return std::nullopt;
   const bool by_waves = met.path.kind == ArrivalKind::diffracted;
   return delay_curve(by_waves ? wave_moments(path) : pulse_moments(path), received, Vec3::Zero(),
-                     highest, aperture);
+                     Vec3::Zero(), highest, aperture);
 }
 
 /// Adds the blast at one phone, or at the reference point for all of them.   \return place of the

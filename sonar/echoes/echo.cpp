@@ -475,9 +475,13 @@ class EchoFinder {
     const std::vector<Glint> seen = glints(scenario_, index_, context_.look(), into_target,
                                            out_of_target, geometry_.time() + pair.there.time);
     const Vec3 x = from_reference(channel);
+    const SeenAside seen_aside(at_phone, pair.home.path);
     std::vector<EchoPath> echoes;
     for (const Glint& glint : seen) {
       echo.highlight = glint.highlight;
+      // A phone's own path has its own lag.
+      const Vec3 aside = channel < 0 ? seen_aside.of(glint.offset) : Vec3(Vec3::Zero());
+      echo.received.slowness = met_by(phone.velocity, at_phone + aside);
       echo.received.delay = pair.home.time + lag.dot(glint.offset) - echo.received.slowness.dot(x);
       echo.received.amplitude = carried * glint.amplitude;
       echo.response.without_pattern = crossed * glint.amplitude;
@@ -513,8 +517,12 @@ class EchoFinder {
           path.array_course_changes.empty());
     if (phase < negligible_phase && !course_changes) return;
     const std::vector<PulseMoment> moments = moments_of(path, pair, receiver);
-    for (std::size_t i = 0; i < echoes.size(); ++i)
-      echoes[i].curve = delay_curve(moments, echoes[i].received, seen[i].offset, highest, aperture);
+    const SeenAside seen_aside(slownesses(pair).at_phone, pair.home.path);
+    for (std::size_t i = 0; i < echoes.size(); ++i) {
+      const Vec3 aside = channel < 0 ? seen_aside.of(seen[i].offset) : Vec3(Vec3::Zero());
+      echoes[i].curve =
+          delay_curve(moments, echoes[i].received, seen[i].offset, aside, highest, aperture);
+    }
   }
 
   /// What was found for one pair of paths, and how many sets of eigenrays that asked for.

@@ -92,8 +92,9 @@ void add_to(Baseband& all, Baseband&& more) {
 
 /// One path of a leg, for what leaves at one moment.
 struct LegPath {
-  EchoPath received;        // delay since the ping
-  Vec3 lag = Vec3::Zero();  // of a point of the sender at x from its reference point, lag·x [s/m]
+  EchoPath received;  // delay since the ping
+  Vec3 lag;           // of a point of the sender at x from its reference point, lag·x [s/m]
+  SeenAside aside;    // of such a point
 };
 
 /// A leg of the way, from something that moves to something else that moves.
@@ -128,10 +129,11 @@ class MovingLeg {
                                .body_velocity = from.velocity,
                                .phone_velocity = met.way.end.velocity}
                            .per_offset();
-      found.push_back({received_along(context_, from, met), lag});
+      const SeenAside aside(at_receiver, met.path);
+      found.push_back({received_along(context_, from, met), lag, aside});
       scattered.clear();
       scatter_along(context_, from, sent, met, ends_, found.back().received, scattered);
-      for (EchoPath& part : scattered) found.push_back({std::move(part), lag});
+      for (EchoPath& part : scattered) found.push_back({std::move(part), lag, aside});
     }
     return found;
   }
@@ -419,6 +421,7 @@ class TwoSteps {
               if (!waves[place]) continue;
               for (const LegPath& path : paths) {
                 Return r = leaving_at(path, middle, moment);
+                if (!own) r.slowness += path.aside.of(glint.offset);
                 r.delay += path.lag.dot(glint.offset) - r.slowness.dot(x);
                 r.amplitude =
                     path.received.response.without_pattern * glint.amplitude * struck[place].scale;

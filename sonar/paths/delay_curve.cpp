@@ -125,16 +125,17 @@ std::vector<PulseMoment> pulse_moments(const MovingPath& path) {
 }
 
 std::optional<DelayCurve> delay_curve(const std::vector<PulseMoment>& moments,
-                                      const Return& straight, const Vec3& offset, double frequency,
-                                      double aperture) {
+                                      const Return& straight, const Vec3& offset, const Vec3& aside,
+                                      double frequency, double aperture) {
   if (moments.empty()) return std::nullopt;
   std::vector<DelayCurve::Piece> pieces;
   double furthest = 0.0, first = 0.0, turned = 0.0;
   for (std::size_t i = 0; i < moments.size(); ++i) {
     const PulseMoment& m = moments[i];
-    if (i % points == 0) pieces.emplace_back().first_slowness = m.at_array;
-    pieces.back().last_slowness = m.at_array;
-    turned = std::max(turned, (m.at_array - straight.slowness).norm());
+    const Vec3 slowness = m.at_array + aside;
+    if (i % points == 0) pieces.emplace_back().first_slowness = slowness;
+    pieces.back().last_slowness = slowness;
+    turned = std::max(turned, (slowness - straight.slowness).norm());
     const double received = m.received + m.lag.dot(offset);
     if (i == 0) first = received;
     pieces.back().received[i % points] = received;

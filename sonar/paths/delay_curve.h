@@ -82,10 +82,12 @@ struct MovingPath {
 [[nodiscard]] std::vector<PulseMoment> pulse_moments(const MovingPath& path);
 
 /// The curve through those moments, as a highlight of the target at `offset` (map axes) sends them
-/// back. \return nothing where a constant Doppler factor does
+/// back. \param aside  change of the slowness for that offset (SeenAside)
+/// \return nothing where a constant Doppler factor does
 [[nodiscard]] std::optional<DelayCurve> delay_curve(const std::vector<PulseMoment>& moments,
                                                     const Return& straight, const Vec3& offset,
-                                                    double frequency, double aperture);
+                                                    const Vec3& aside, double frequency,
+                                                    double aperture);
 
 /// The waypoints at which a track changes its velocity [s], counted from `start`.
 [[nodiscard]] std::vector<double> course_changes_of(const Track& track, double start);

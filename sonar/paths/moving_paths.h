@@ -33,6 +33,28 @@ struct BodyLag {
   }
 };
 
+/// How the direction differs in which points of a body are received along a path: by straight lines
+/// of its length, unfolded at its bounces. Over kilometres tens of metres are a degree.
+struct SeenAside {
+  Vec3 at_phone = Vec3::Zero();  ///< slowness of the body's reference point there [s/m]
+  double length = infinity;      ///< of the path [m]
+  bool mirrored = false;         ///< by an odd number of bounces
+
+  SeenAside(const Vec3& slowness, const Arrival& path)
+      : at_phone(slowness),
+        length(std::max(path.path_length, 1e-3)),
+        mirrored((path.surface_bounces + path.bottom_bounces) % 2 != 0) {}
+
+  /// Change of the slowness for a point at x from the reference point [s/m].
+  [[nodiscard]] Vec3 of(const Vec3& x) const {
+    const Vec3 away(x.x(), x.y(), mirrored ? -x.z() : x.z());
+    const double slowness = at_phone.norm();
+    const Vec3 ahead = at_phone / slowness;
+    const Vec3 line = length * ahead - away;  // from the point to the phone
+    return slowness * (line.normalized() - ahead);
+  }
+};
+
 /// One way from a fixed point at a known time to something that moves: eigenrays to where it is at
 /// a reference time. Times count from the start of the ping.
 struct Way {
