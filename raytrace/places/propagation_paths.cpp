@@ -72,7 +72,7 @@ PathLimits limits_around(std::span<const Arrival> known, PathLimits limits) {
     needed.max_surface_bounces = std::max(needed.max_surface_bounces, path.surface_bounces);
     needed.max_bottom_bounces = std::max(needed.max_bottom_bounces, path.bottom_bounces);
     needed.max_launch_angle =
-        std::max({needed.max_launch_angle, std::abs(path.launch_elevation) + radians(10.0)});
+        std::max(needed.max_launch_angle, std::abs(path.launch_elevation) + radians(10.0));
   }
   limits.max_surface_bounces = std::min(limits.max_surface_bounces, needed.max_surface_bounces);
   limits.max_bottom_bounces = std::min(limits.max_bottom_bounces, needed.max_bottom_bounces);

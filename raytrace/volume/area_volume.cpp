@@ -27,7 +27,10 @@ AreaVolume::AreaVolume(std::shared_ptr<const Area> area)
     deepest_ = std::max(deepest_, here.depth);
   });
   steepest_ *= more;
-  if (!area_->water()) return;
+  if (!area_->water()) {
+    bending_ = column_.sideways_bending();
+    return;
+  }
   const WaterMap& water = *area_->water();
   look(std::max(water.spacing(0.0, 0.0), measured / 10.0), 10.0, [&](double x, double y) {
     if (!water.covers(x, y) || area_->is_land(x, y)) return;

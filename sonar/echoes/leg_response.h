@@ -72,6 +72,11 @@ struct MetLeg {
 /// amplitudes are those at its edge.
 [[nodiscard]] double response_half_band(const Pulse& pulse) noexcept;
 
+/// Time by which a response that is sampled over that band delays sound at most [s].
+[[nodiscard]] inline double delay_of_response(const Pulse& pulse) noexcept {
+  return 32.0 / response_half_band(pulse);
+}
+
 /// Amplitudes of a leg's paths across a band. Paths by waves that the band does not resolve share
 /// their sum as at the centre.   \param centre, half_width  [Hz]
 [[nodiscard]] SampledResponse leg_response(const PropagationPaths& paths, const MetLeg& leg,

@@ -325,7 +325,7 @@ class TwoSteps {
     }
     if (!(first <= last)) return {};
     longest += body_radius() / 1000.0;
-    if (!band_.home.empty()) longest += longest_response();
+    if (!band_.home.empty()) longest += delay_of_response(*context_.pulse);
     Recording there = recording_;
     there.start = first - longest;
     there.samples = static_cast<std::size_t>(
@@ -335,11 +335,6 @@ class TwoSteps {
     for (const Piece& piece : pieces)
       add_to(all, baseband_of(piece.wave, there, max_doppler_, piece.returns, no_offsets));
     return all;
-  }
-
-  /// Time by which what a response over the band adds is over [s].
-  [[nodiscard]] double longest_response() const {
-    return 32.0 / response_half_band(*context_.pulse);
   }
 
   /// All channels through a filter of the band. \param filter  over the frequency from the pulse's

@@ -33,8 +33,8 @@ struct BodyLag {
   }
 };
 
-/// How the direction differs in which points of a body are received along a path: by straight lines
-/// of its length, unfolded at its bounces. Over kilometres tens of metres are a degree.
+/// Directions in which the points of a body are received along a path: straight lines of its
+/// length, unfolded at its bounces. Ten metres at a kilometre are half a degree.
 struct SeenAside {
   Vec3 at_phone = Vec3::Zero();  ///< slowness of the body's reference point there [s/m]
   double length = infinity;      ///< of the path [m]

@@ -132,9 +132,6 @@ PingRecord PingSimulator::blank_record(const PingGeometry& geometry) const {
   return record;
 }
 
-/// Time by which a response that is sampled over a pulse's band delays sound at most [s].
-static double delay_of_response(const Pulse& pulse) { return 32.0 / response_half_band(pulse); }
-
 /// The part of a recording in which a target's many echoes are received; without samples where it
 /// holds none of them. All of it where boundaries scatter, because how late that comes is drawn.
 static Recording around(const ManyEchoes& many, const EchoContext& context, const Pulse& pulse,

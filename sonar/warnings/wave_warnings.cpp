@@ -175,25 +175,19 @@ double along_boundaries(const Environment& ocean, double source_depth, double re
          std::sqrt(energy);
 }
 
-std::string line_of_interface(double share, const std::string& whose) {
-  constexpr double tolerable_share = 0.12;  // 1 dB
+/// \param share  pressure over that of the rays   \param what  is left out
+std::string line_of_lack(double share, double tolerable_share, const std::string& whose,
+                         const char* what) {
   if (!(share > tolerable_share)) return "";
-  return formatted(
-      "propagation: waves along a boundary, which are no rays, come to or from %s with roughly "
-      "%.1g "
-      "times the pressure of all rays together; they are left out",
-      whose.c_str(), share);
+  return formatted("propagation: %s %s is left out, roughly %.1g times the pressure of its rays",
+                   whose.c_str(), what, share);
 }
-
-std::string line_of_direct(double share, const std::string& whose) {
-  constexpr double tolerable_share = 0.25;  // 2 dB
-  if (!(share > tolerable_share)) return "";
-  return formatted(
-      "propagation: no direct ray goes to or from %s, only rays off the boundaries; the direct "
-      "sound that waves carry there is left out, roughly %.1g times the pressure of "
-      "these rays",
-      whose.c_str(), share);
-}
+constexpr char waves_along_a_boundary[] =
+    "is reached by waves along a boundary, which are no rays; their sound";
+constexpr char hidden_direct_sound[] =
+    "has rays off the boundaries, and no direct ray goes to or from it; the direct sound that "
+    "waves "
+    "carry there";
 
 std::string line_of_reflection(double error, const std::string& whose) {
   constexpr double tolerable_error = 0.12;  // 1 dB
@@ -316,13 +310,15 @@ std::vector<std::string> wave_warnings(const PingGeometry& geometry, const Propa
     const std::string name =
         "target \"" + scenario.targets[static_cast<std::size_t>(t)].name + "\"";
     const AcrossThePulse there = judged(source, place), home = judged(place, receiver);
-    add_warnings({line_of(there, name), line_of(home, name),
-                  line_of_share(std::max(there.corners, home.corners), name, beside_corners),
-                  line_of_share(std::max(there.caustics, home.caustics), name, at_caustics),
-                  line_of_direct(std::max(there.direct, home.direct), name),
-                  line_of_interface(std::max(there.interface, home.interface), name),
-                  line_of_reflection(std::max(there.reflection, home.reflection), name)},
-                 found);
+    add_warnings(
+        {line_of(there, name), line_of(home, name),
+         line_of_share(std::max(there.corners, home.corners), name, beside_corners),
+         line_of_share(std::max(there.caustics, home.caustics), name, at_caustics),
+         line_of_lack(std::max(there.direct, home.direct), 0.25, name, hidden_direct_sound),
+         line_of_lack(std::max(there.interface, home.interface), 0.12, name,
+                      waves_along_a_boundary),
+         line_of_reflection(std::max(there.reflection, home.reflection), name)},
+        found);
   }
   if (scenario.propagation.direct_blast && !geometry.is_own(array))
     add_warnings({line_of(judged(source, receiver), "an array")}, found);

@@ -70,7 +70,7 @@ TEST(SamePath, IsTheOneOfTheSameSlownessWhereALevelRayTurns) {
           EXPECT_EQ(found->delay, truth->delay) << z << ' ' << receiver << ' ' << range;
           if (std::abs(truth->launch_elevation - path.launch_elevation) < radians(1.0)) continue;
           ++turned_far;
-          // Where speed varies with range the angle is all there is.
+          // The angle is all there is if speed varies with range.
           if (const Arrival* by_angle = same_path(after, path, false); by_angle != nullptr) {
             EXPECT_EQ(by_angle->delay, truth->delay) << z << ' ' << receiver << ' ' << range;
           }

@@ -244,7 +244,7 @@ TEST(TwoStepEcho, ServesCurvedPairsWhoeverListens) {
   EXPECT_LT(db_from_power(off / all), -60.0);
 }
 
-// What a phone far from the others receives is not cut off with the time in which they hear.
+// A phone far from the others receives all of its echo, though it begins or ends beside theirs.
 TEST(TwoStepEcho, ReachesPhonesFarApart) {
   Scenario s = curved();
   s.pulse.duration = 0.4;
