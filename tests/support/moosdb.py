@@ -170,7 +170,7 @@ class SmallMoosDB:
         with self.changed:
             return [m for m in self.log if m["key"] == key]
 
-    def wait(self, key, holds=lambda m: True, seconds=60, after=0):
+    def wait(self, key, holds=lambda m: True, seconds=300, after=0):
         """→ the first message of a variable that holds, of those after so many. \\throws
         TimeoutError
         """
@@ -186,7 +186,7 @@ class SmallMoosDB:
                 raise TimeoutError(f"no {key} within {seconds} s; errors: {said}")
             return found[0]
 
-    def wait_client(self, name, wants=None, seconds=60):
+    def wait_client(self, name, wants=None, seconds=300):
         with self.changed:
             if not self.changed.wait_for(lambda: name in self.clients and (
                     wants is None or wants in self.clients[name]["wants"]), seconds):
