@@ -13,6 +13,7 @@ using RayVector = Eigen::Matrix<double, 20, 1, Eigen::DontAlign>;  // x, p, X, P
 
 constexpr double touching_boundary = 1e-9;  // [m]
 constexpr int most_volume_steps = 200000;
+constexpr double tolerable_nepers = 1e-5;  // of a step
 
 RayVector packed_state(const VolumeState& s) noexcept {
   RayVector y;
@@ -522,7 +523,7 @@ class VolumeTracer::Run {
   }
 
   /// One step of Dormand & Prince, J. Comp. Appl. Math. 6, 19 (1980). \param error  of the place,
-  /// in tolerances
+  /// the tube and the absorption, in tolerances
   [[nodiscard]] RayVector stepped(const RayVector& y, const RayVector& k1, double h, double* error,
                                   RayVector* last) const {
     const RayVector k2 = rate(y + h * (1.0 / 5.0) * k1);
@@ -540,8 +541,11 @@ class VolumeTracer::Run {
     const RayVector e = h * (71.0 / 57600.0 * k1 - 71.0 / 16695.0 * k3 + 71.0 / 1920.0 * k4 -
                              17253.0 / 339200.0 * k5 + 22.0 / 525.0 * k6 - 1.0 / 40.0 * *last);
     const double tube = std::max(1.0, y.segment<6>(6).norm());
-    *error = std::max(e.segment<3>(0).norm() / limits_.tolerance,
-                      e.segment<6>(6).norm() / (tube * std::max(1e-9, 1e-3 * limits_.tolerance)));
+    // Absorption may jump from layer to layer, as that of biology does.
+    *error =
+        std::max({e.segment<3>(0).norm() / limits_.tolerance,
+                  e.segment<6>(6).norm() / (tube * std::max(1e-9, 1e-3 * limits_.tolerance)),
+                  std::abs(e[19]) / tolerable_nepers});
     return end;
   }
 

@@ -13,7 +13,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double nearest_shadow = 50.0;   // wavelengths: no shadow is nearer
+constexpr double nearest_shadow = 10.0;   // wavelengths: where the far field begins
 constexpr double faintest = 1e-3;         // of 1/r: the integral's own noise is 1e-5
 constexpr double faintest_beside = 0.01;  // of the rays
 constexpr double slowness_share = 0.02;   // by which slownesses may differ from 1/c

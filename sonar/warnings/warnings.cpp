@@ -14,6 +14,7 @@
 #include "raytrace/places/propagation_paths.h"
 #include "raytrace/volume/area_volume.h"
 #include "raytrace/waves/diffraction.h"
+#include "reverb/fields/ground_spacing.h"
 #include "reverb/scattering/energy.h"
 #include "sonar/noise/ambient_noise.h"
 #include "sonar/noise/noise_coherence.h"
@@ -494,23 +495,33 @@ std::string overlapping_records(const Scenario& scenario) {
 
 std::string coarse_rings(const Scenario& scenario) {
   const ReverberationSettings& sea = scenario.reverberation;
-  if (!sea.enabled || !sea.ground_spacing || !(sea.surface_scatters || sea.bottom)) return "";
-  const double spacing = *sea.ground_spacing;
+  const bool scatters =
+      sea.surface_scatters || sea.bottom || !sea.seabed.empty() || !sea.volume.empty();
+  if (!sea.enabled || !scatters) return "";
+  constexpr double too_wide = 8.0;  // re the height: about one scatterer of 36 is that close
+  const double height = height_over_scatterers(scenario);
   for (std::size_t t = 0; t < scenario.transmitters.size(); ++t) {
     const Platform& platform =
         scenario.platforms[static_cast<std::size_t>(scenario.transmitters[t].platform)];
-    const double c = speed_at(scenario, platform.track.at(0.0).position),
-                 duration = pulse_of(scenario, static_cast<int>(t)).duration;
-    if (!(2.0 * spacing > c * duration)) continue;
-    char text[320];
-    std::snprintf(
-        text, sizeof text,
-        "reverberation.ground_spacing: between rings %g m apart reverberation is received "
-        "%.3g s apart, and the pulse of transmitter %s lasts %.3g s: samples come in "
-        "bursts, and those of the first rings may differ from /levels by 10 dB and more; "
-        "at most %.3g m fills the gaps",
-        spacing, 2.0 * spacing / c, platform.name.c_str(), duration, 0.5 * c * duration);
-    return text;
+    const double c = speed_at(scenario, platform.track.at(0.0).position);
+    const Pulse pulse(pulse_of(scenario, static_cast<int>(t)));
+    const double duration = pulse.duration();
+    const double spacing =
+        ground_spacing(sea, scenario.environment, pulse.bandwidth_99(), c, height);
+    if (sea.ground_spacing && 2.0 * spacing > c * duration)
+      return formatted(
+          "reverberation.ground_spacing: between rings %g m apart reverberation is received "
+          "%.3g s apart, and the pulse of transmitter %s lasts %.3g s: samples come in "
+          "bursts, and those of the first rings may differ from /levels by 10 dB and more; "
+          "at most %.3g m fills the gaps",
+          spacing, 2.0 * spacing / c, platform.name.c_str(), duration, 0.5 * c * duration);
+    if (spacing > too_wide * height)
+      return formatted(
+          "reverberation.ground_spacing: rings are %.3g m wide, and transmitter %s is %.3g m from "
+          "what scatters: few scatterers lie below it, so most pings are fainter than /levels, by "
+          "10 dB and more, until %.3g s after they were sent; at most %.3g m is wide enough",
+          spacing, platform.name.c_str(), height, 2.0 * spacing / c + duration,
+          std::max(2.0 * height, 0.01));
   }
   return "";
 }

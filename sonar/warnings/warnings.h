@@ -48,7 +48,8 @@ namespace checks {
 [[nodiscard]] std::string echo_beside_record(const Scenario& scenario);
 /// Pings whose records overlap. No record contains what is received of another ping.
 [[nodiscard]] std::string overlapping_records(const Scenario& scenario);
-/// Rings of reverberation that are further apart than the pulse is long.
+/// Rings of reverberation that are further apart than the pulse is long, or much wider than the
+/// source is high over them.
 [[nodiscard]] std::string coarse_rings(const Scenario& scenario);
 /// A line transmitter that is steered so far that its beam is much wider than `beamwidth_deg`.
 [[nodiscard]] std::string steered_line(const Scenario& scenario);

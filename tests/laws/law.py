@@ -115,6 +115,12 @@ def everywhere(s, change):
 
 # --- sizes -----------------------------------------------------------------------------------------------------------
 
+def duration(s):
+    """Of the pulse [s]."""
+    p = s["pulse"]
+    return p["duration"] if "duration" in p else len(p["samples"]) / p["sample_rate"]
+
+
 def amplitudes(record, s):
     """Peak pressures of all paths at the phones [Pa]: rows of echoes, and direct sound without the pattern."""
     level = np.concatenate([np.asarray(record.echoes.get("level_db", ()), dtype=float),

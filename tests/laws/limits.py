@@ -162,7 +162,10 @@ def stronger_target(s, p):
 
 @law
 def targets_add(s, p):
-    """Two targets together are the sum of each alone. Synthesis leaves out -90 dB of the loudest: 3e-4 with three runs.
+    """Two targets together are the sum of each alone: 3.6e-4.
+
+    Synthesis errs by -90 dB of the loudest sound (3e-5) in each of four places, that is in the pulse's band, in the filter
+    of delays, in the expansion of Doppler and in the paths that are left out, and three runs are compared.
 
     "auto" follows as many bounces as each run needs, so numbers stand in its place. What rough boundaries scatter is drawn
     for each target by its number. A pulse has soft edges here: of one whose edges jump, what is let through depends on the
@@ -185,7 +188,7 @@ def targets_add(s, p):
     both, one, other = program.at_one_rate(*(ping(copied(s) | {"target": targets}) for targets in ([a, b], [a], [b])))
     n = min(x.pressure.shape[-1] for x in (both, one, other))
     off = norm(both.pressure[..., :n] - one.pressure[..., :n] - other.pressure[..., :n]) / loudness(both, s)
-    expect(off <= 3e-4, f"two targets differ from the sum of both by {off:.1e}")
+    expect(off <= 3.6e-4, f"two targets differ from the sum of both by {off:.1e}")
 
 
 @law

@@ -3,7 +3,7 @@ import math
 
 import numpy as np
 
-from law import Silent, alike, copied, db, expect, law, loudness, need_leg, norm, one_place, ping, plain, still, warned
+from law import Silent, alike, copied, db, duration, expect, law, loudness, need_leg, norm, one_place, ping, plain, still, warned
 from program import Folder, run
 
 
@@ -167,8 +167,8 @@ def levels_hold_the_noise(s, p):
 def levels_hold_the_reverberation(s, p):
     """/levels' row of reverberation is the mean of what is received: over six pings whose scatterers forget.
 
-    The sum over a record has about B·T independent values a ping; at six standard deviations. Sectors are four, so a
-    value is a sum of few scatterers, whose powers vary like exponentials: factor two in variance.
+    A record has about as many independent values as pulses fit into what is loud of it; at six standard deviations.
+    Sectors are four, so a value is a sum of few scatterers, whose powers vary like exponentials: factor two in variance.
     """
     r = copied(s)["reverberation"]
     if not r.get("enabled", True):
@@ -201,10 +201,11 @@ def levels_hold_the_reverberation(s, p):
     held, said = float(np.mean(power)), float(np.mean(np.asarray(row, dtype=float)[..., : row.shape[-1]]))
     # Cells that count: the effective number of intervals, (Σx)²/Σx².
     x = np.asarray(row, dtype=float).mean(axis=0)
-    cells = float(x.sum() ** 2 / np.sum(x ** 2))
+    step = s["pings"]["recording_duration"] / x.size
+    cells = float(x.sum() ** 2 / np.sum(x ** 2)) * min(1.0, step / max(duration(s), step))
     share = 6.0 * math.sqrt(2.0 / max(6.0 * cells, 1.0))
     expect(held / said <= 1 + share + 0.1 and (share >= 0.9 or held / said >= 1 - share - 0.1),
-           f"samples {db(held / said):+.2f} dB re /levels over {cells:.0f} cells")
+           f"samples {db(held / said):+.2f} dB re /levels over {cells:.1f} independent cells")
 
 
 @law

@@ -94,6 +94,33 @@ INSTANTIATE_TEST_SUITE_P(, LayeredVolume,
                                          Leg{77.0, 100.0, 100.0, 4000.0},
                                          Leg{140.0, 50.0, 2000.0, 500.0}));
 
+// Layers of fish have sharp edges, at which absorption jumps in the middle of a step: rays of a duct
+// that pass them many times lose what they lose in planes.
+TEST(VolumeTracer, AbsorptionMayJump) {
+  Environment sea =
+      layered_sea(SoundSpeedProfile::table(std::array{0.0, 50.84, 152.52},
+                                           std::array{1500.0, 1488.0, 1501.0},
+                                           Interpolation::n2_linear));
+  sea.bottom.depth = 152.0;
+  sea.biology = {{.top = 25.42, .bottom = 50.84, .resonance = 200.0, .strength = 0.5}};
+  const TransectVolume volume(sea, {.x = 0.0, .y = 0.0, .bearing = 0.0});
+  const PathLimits limits{.max_surface_bounces = 0, .max_bottom_bounces = 0};
+  const Vec3 from(0.0, 0.0, 31.77), to(-4337.3, -5755.8, 31.77);
+  const Arrivals found = volume_eigenrays(VolumeTracer(volume, 200.0), from, to, limits);
+  const Arrivals planes =
+      EigenraySolver(sea).find(31.77, 31.77, separation(from, to).range, 200.0, limits);
+  ASSERT_EQ(found.size(), planes.size());
+  ASSERT_GE(found.size(), 3u);
+  for (const Arrival& a : planes) {
+    const auto b = std::find_if(found.begin(), found.end(), [&](const Arrival& v) {
+      return std::abs(v.launch_elevation - a.launch_elevation) < 2e-5;
+    });
+    ASSERT_NE(b, found.end());
+    EXPECT_GT(a.absorption_db, 10.0);
+    EXPECT_NEAR(b->absorption_db, a.absorption_db, 0.03);
+  }
+}
+
 // Straight up and down a slope rays keep to the vertical plane, and the sea is the same beside it:
 // N × 2D is right there, its amplitude, too, where spreading is that of a plane.
 TEST(AlongTheTransect, IsTheMarchedPlane) {

@@ -265,6 +265,10 @@ TEST(SummaryAndSamples, RecordsThatLackSoundAreWarnedOf) {
   s.reverberation.ground_spacing = 3.0;
   EXPECT_NE(checks::coarse_rings(s).find("at most 0.75 m"), std::string::npos)
       << checks::coarse_rings(s);
+  s.reverberation.ground_spacing = 0.5;
+  s.platforms[0].track.start.position.z() = 0.05;
+  EXPECT_NE(checks::coarse_rings(s).find("at most 0.1 m is wide enough"), std::string::npos)
+      << checks::coarse_rings(s);
   s.reverberation.enabled = false;
   EXPECT_EQ(checks::coarse_rings(s), "");
 }
