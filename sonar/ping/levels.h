@@ -16,7 +16,8 @@ namespace asdic::detail {
 /// received, expected reverberation and noise.
 class LevelMeter {
  public:
-  /// \param pulse_duration  the steps' length, at most 50 ms and at least a 20 000th of the record
+  /// \param pulse_duration  the steps' length, at most 50 ms, but at least a 20 000th of the record
+  /// and two samples
   LevelMeter(const Recording& recording, double pulse_duration);
 
   /// \param peak_pressure  of the source at 1 m [Pa], the unit of the baseband
