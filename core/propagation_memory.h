@@ -43,7 +43,8 @@ enum class Kept : std::uint64_t {
   reverberation_streams,
   noise_factors,
   mean_reverberation,
-  branch_waves
+  branch_waves,
+  fold_field
 };
 
 /// All the numbers that decide a result, bit for bit: best made of what the function that finds it

@@ -183,6 +183,13 @@ void add_to(ExactKey& key, const BranchNeed& need) {
   key.add_all(upper, lower, frequency, furthest, steepest);
 }
 
+void add_to(ExactKey& key, const FoldNeed& need) {
+  const auto& [source_depth, receiver_depth, frequency, range, side, scale, launch, surface_bounces,
+               bottom_bounces, vertices] = need;  // every member by name
+  key.add_all(source_depth, receiver_depth, frequency, range, side, scale, launch, surface_bounces,
+              bottom_bounces, vertices);
+}
+
 void add_to(ExactKey& key, const PathLimits& limits) {
   // Every member by name: one more does not compile until it is here.
   const auto& [surface_bounces, bottom_bounces, launch_angle, vertices, diffraction, faintest,
@@ -306,7 +313,11 @@ Arrivals PropagationPaths::search_plane(const Vec3& from, const Vec3& to, double
         rough ? between_mirrors() : layered_solver();
     Arrivals found = solver->find(from.z(), to.z(), range, frequency, limits);
     if (limits.diffraction) {
-      put_caustics(*solver, from.z(), to.z(), range, frequency, limits, found);
+      put_caustics(*solver, from.z(), to.z(), range, frequency, limits, found,
+                   [&](const FoldNeed& need, const FoldMaker& make) {
+                     return memory_->remember(key(Kept::fold_field, need, limits), make,
+                                              [](const FoldField& field) { return bytes_of(field); });
+                   });
       put_waves(
           *solver, from.z(), to.z(), range, frequency, limits, found,
           [&](const CycleNeed& need, const CyclesMaker& make) {

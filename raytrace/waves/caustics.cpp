@@ -131,12 +131,17 @@ bool of_the_fold(double zeta, double expected) {
   return zeta > 0.5 * expected && zeta < 2.0 * expected;
 }
 
+}  // namespace
+
 /// The field about a fold, out of pairs of rays on its lit side.
 class FoldField {
  public:
   FoldField(const EigenraySolver& solver, double source_depth, double receiver_depth,
             const Fold& fold, double frequency, const PathLimits& limits)
       : fold_(fold), omega_(2.0 * pi * frequency) {
+    PathLimits of_fold = limits;  // other paths than its own are not asked for
+    of_fold.max_surface_bounces = std::min(of_fold.max_surface_bounces, fold.surface_bounces);
+    of_fold.max_bottom_bounces = std::min(of_fold.max_bottom_bounces, fold.bottom_bounces);
     for (double share = 1.0; share > 0.2 && !known_; share *= 0.5) {
       std::array<double, sample_places.size()> ranges{};
       for (std::size_t j = 0; j < ranges.size(); ++j) {
@@ -145,7 +150,7 @@ class FoldField {
       }
       if (!(*std::min_element(ranges.begin(), ranges.end()) > 0.0)) continue;
       const std::vector<Arrivals> rays =
-          solver.find(source_depth, receiver_depth, ranges, frequency, limits);
+          solver.find(source_depth, receiver_depth, ranges, frequency, of_fold);
       known_ = true;
       for (std::size_t j = 0; j < ranges.size() && known_; ++j) {
         const auto pair = pair_about(fold, rays[j]);
@@ -159,6 +164,11 @@ class FoldField {
     }
   }
 
+  [[nodiscard]] std::size_t bytes() const noexcept {
+    std::size_t sum = sizeof *this;
+    for (const Arrival& path : nearest_) sum += path.bounces.capacity() * sizeof(Bounce);
+    return sum;
+  }
   [[nodiscard]] bool known() const noexcept { return known_; }
   [[nodiscard]] const std::array<Arrival, 2>& nearest() const noexcept { return nearest_; }
 
@@ -206,10 +216,11 @@ class FoldField {
   std::array<Arrival, 2> nearest_;
 };
 
-}  // namespace
+std::size_t bytes_of(const FoldField& field) noexcept { return field.bytes(); }
 
 void put_caustics(const EigenraySolver& solver, double source_depth, double receiver_depth,
-                  double range, double frequency, const PathLimits& limits, Arrivals& found) {
+                  double range, double frequency, const PathLimits& limits, Arrivals& found,
+                  const FoldKeeper& keeper) {
   const double omega = 2.0 * pi * frequency;
   const double wavelength = solver.environment().water.at(receiver_depth).c / frequency;
   const double reach = std::min(0.5 * range, 30.0 * std::cbrt(wavelength * wavelength * range));
@@ -230,9 +241,25 @@ void put_caustics(const EigenraySolver& solver, double source_depth, double rece
       if (of_the_fold(field.zeta, about)) replace(field);
       continue;
     }
-    const FoldField about_fold(solver, source_depth, receiver_depth, fold, frequency, limits);
-    if (!about_fold.known()) continue;
-    const auto there = about_fold.at(away);
+    const FoldMaker make = [&] {
+      return std::make_shared<FoldField>(solver, source_depth, receiver_depth, fold, frequency,
+                                         limits);
+    };
+    const std::shared_ptr<const FoldField> about_fold =
+        keeper ? keeper({.source_depth = source_depth,
+                         .receiver_depth = receiver_depth,
+                         .frequency = frequency,
+                         .range = fold.range,
+                         .side = fold.side,
+                         .scale = fold.scale,
+                         .launch = fold.launch,
+                         .surface_bounces = fold.surface_bounces,
+                         .bottom_bounces = fold.bottom_bounces,
+                         .vertices = fold.vertices},
+                        make)
+               : make();
+    if (!about_fold->known()) continue;
+    const auto there = about_fold->at(away);
     if (!there) continue;
     const UniformPair& field = *there;
     if (pair && away > 0.0) {
@@ -241,7 +268,7 @@ void put_caustics(const EigenraySolver& solver, double source_depth, double rece
     }
     const double apart = field.zeta > 0.0 ? 2.0 / 3.0 * std::pow(field.zeta, 1.5) / omega : 0.0;
     for (const auto& [index, sign] : {std::pair{0, -1.0}, {1, 1.0}}) {
-      Arrival path = about_fold.nearest()[std::size_t(index)];
+      Arrival path = about_fold->nearest()[std::size_t(index)];
       path.delay = field.delay + sign * apart;
       make_wave(path, field.part(sign, omega, path.delay) / path.amplitude);
       path.launch_elevation = field.launch;
