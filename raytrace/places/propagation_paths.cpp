@@ -183,11 +183,9 @@ void add_to(ExactKey& key, const BranchNeed& need) {
   key.add_all(upper, lower, frequency, furthest, steepest);
 }
 
-void add_to(ExactKey& key, const FoldNeed& need) {
-  const auto& [source_depth, receiver_depth, frequency, range, side, scale, launch, surface_bounces,
-               bottom_bounces, vertices] = need;  // every member by name
-  key.add_all(source_depth, receiver_depth, frequency, range, side, scale, launch, surface_bounces,
-              bottom_bounces, vertices);
+void add_to(ExactKey& key, const CausticsNeed& need) {
+  const auto& [source_depth, receiver_depth, frequency, nearest, furthest] = need;  // all members
+  key.add_all(source_depth, receiver_depth, frequency, nearest, furthest);
 }
 
 void add_to(ExactKey& key, const PathLimits& limits) {
@@ -314,9 +312,9 @@ Arrivals PropagationPaths::search_plane(const Vec3& from, const Vec3& to, double
     Arrivals found = solver->find(from.z(), to.z(), range, frequency, limits);
     if (limits.diffraction) {
       put_caustics(*solver, from.z(), to.z(), range, frequency, limits, found,
-                   [&](const FoldNeed& need, const FoldMaker& make) {
+                   [&](const CausticsNeed& need, const CausticsMaker& make) {
                      return memory_->remember(key(Kept::fold_field, need, limits), make,
-                                              [](const FoldField& field) { return bytes_of(field); });
+                                              [](const Caustics& made) { return bytes_of(made); });
                    });
       put_waves(
           *solver, from.z(), to.z(), range, frequency, limits, found,

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <mutex>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -72,32 +75,33 @@ UniformPair uniform_of(const Arrival& early, const Arrival& late, double omega) 
           .slowness = 0.5 * (early.horizontal_slowness + late.horizontal_slowness)};
 }
 
-std::vector<Fold> folds_near(const BranchTable& table, double range, double reach, double omega) {
+/// All folds at ranges of an interval. \param nearest, furthest  its ends [m]
+std::vector<Fold> folds_within(const BranchTable& table, double nearest, double furthest,
+                               double omega) {
   std::vector<Fold> folds;
-  table.for_each_piece(
-      std::max(0.0, range - reach), range + reach, [&](const MonotonePiece& piece) {
-        if (!piece.caustic_begin || std::abs(piece.range_begin - range) > reach) return;
-        const FanInterval& interval = *piece.interval;
-        const RayParameter ray(interval.reference_speed, piece.sigma_begin);
-        const double step = 1e-3 * (piece.sigma_end - piece.sigma_begin);
-        const double bend =
-            table.evaluate(interval, piece.branch, piece.sigma_begin + step).slope / step;
-        // The phase ωτ is cubic about the fold: ω(ξ′x·δr − r″ξ′x³/6).
-        const double turn = std::abs(ray.slowness_per_sigma());
-        const double scale =
-            std::cbrt(0.5 * std::abs(bend) * turn) / (std::pow(omega, 2.0 / 3.0) * turn);
-        if (!std::isfinite(scale) || !(scale > 0.0)) return;
-        const double sine = std::sqrt(std::max(0.0, ray.sine2(table.column().source_speed())));
-        const double launch = std::asin(std::min(1.0, sine));
-        const Branch& branch = piece.branch;
-        folds.push_back({.range = piece.range_begin,
-                         .side = piece.range_end > piece.range_begin ? 1.0 : -1.0,
-                         .scale = scale,
-                         .launch = branch.starts_up ? launch : -launch,
-                         .surface_bounces = interval.turns_above ? 0 : branch.top_vertices(),
-                         .bottom_bounces = interval.turns_below ? 0 : branch.bottom_vertices(),
-                         .vertices = branch.vertices});
-      });
+  table.for_each_piece(nearest, furthest, [&](const MonotonePiece& piece) {
+    if (!piece.caustic_begin || piece.range_begin < nearest || piece.range_begin > furthest) return;
+    const FanInterval& interval = *piece.interval;
+    const RayParameter ray(interval.reference_speed, piece.sigma_begin);
+    const double step = 1e-3 * (piece.sigma_end - piece.sigma_begin);
+    const double bend =
+        table.evaluate(interval, piece.branch, piece.sigma_begin + step).slope / step;
+    // The phase ωτ is cubic about the fold: ω(ξ′x·δr − r″ξ′x³/6).
+    const double turn = std::abs(ray.slowness_per_sigma());
+    const double scale =
+        std::cbrt(0.5 * std::abs(bend) * turn) / (std::pow(omega, 2.0 / 3.0) * turn);
+    if (!std::isfinite(scale) || !(scale > 0.0)) return;
+    const double sine = std::sqrt(std::max(0.0, ray.sine2(table.column().source_speed())));
+    const double launch = std::asin(std::min(1.0, sine));
+    const Branch& branch = piece.branch;
+    folds.push_back({.range = piece.range_begin,
+                     .side = piece.range_end > piece.range_begin ? 1.0 : -1.0,
+                     .scale = scale,
+                     .launch = branch.starts_up ? launch : -launch,
+                     .surface_bounces = interval.turns_above ? 0 : branch.top_vertices(),
+                     .bottom_bounces = interval.turns_below ? 0 : branch.bottom_vertices(),
+                     .vertices = branch.vertices});
+  });
   return folds;
 }
 
@@ -131,8 +135,6 @@ bool of_the_fold(double zeta, double expected) {
   return zeta > 0.5 * expected && zeta < 2.0 * expected;
 }
 
-}  // namespace
-
 /// The field about a fold, out of pairs of rays on its lit side.
 class FoldField {
  public:
@@ -164,11 +166,6 @@ class FoldField {
     }
   }
 
-  [[nodiscard]] std::size_t bytes() const noexcept {
-    std::size_t sum = sizeof *this;
-    for (const Arrival& path : nearest_) sum += path.bounces.capacity() * sizeof(Bounce);
-    return sum;
-  }
   [[nodiscard]] bool known() const noexcept { return known_; }
   [[nodiscard]] const std::array<Arrival, 2>& nearest() const noexcept { return nearest_; }
 
@@ -216,18 +213,65 @@ class FoldField {
   std::array<Arrival, 2> nearest_;
 };
 
-std::size_t bytes_of(const FoldField& field) noexcept { return field.bytes(); }
+}  // namespace
+
+class Caustics {
+ public:
+  Caustics(const EigenraySolver& solver, const CausticsNeed& need, const PathLimits& limits)
+      : need_(need),
+        limits_(limits),
+        folds_(folds_within(solver.table(need.source_depth, need.receiver_depth, limits),
+                            need.nearest, need.furthest, 2.0 * pi * need.frequency)),
+        slots_(std::make_unique<Slot[]>(folds_.size())) {}
+
+  [[nodiscard]] std::span<const Fold> folds() const noexcept { return folds_; }
+  /// Field about one of the folds, made when it is first asked for. \param solver  of that ocean
+  [[nodiscard]] const FoldField& field(std::size_t fold, const EigenraySolver& solver) const {
+    Slot& slot = slots_[fold];
+    std::call_once(slot.once, [&] {
+      slot.field.emplace(solver, need_.source_depth, need_.receiver_depth, folds_[fold],
+                         need_.frequency, limits_);
+    });
+    return *slot.field;
+  }
+  [[nodiscard]] std::size_t bytes() const noexcept {
+    constexpr std::size_t bounces = 1000;  // of the rays of a field
+    return sizeof *this + folds_.size() * (sizeof(Fold) + sizeof(Slot) + bounces);
+  }
+
+ private:
+  struct Slot {
+    std::once_flag once;
+    std::optional<FoldField> field;
+  };
+  CausticsNeed need_;
+  PathLimits limits_;
+  std::vector<Fold> folds_;
+  std::unique_ptr<Slot[]> slots_;
+};
+
+std::size_t bytes_of(const Caustics& caustics) noexcept { return caustics.bytes(); }
 
 void put_caustics(const EigenraySolver& solver, double source_depth, double receiver_depth,
                   double range, double frequency, const PathLimits& limits, Arrivals& found,
-                  const FoldKeeper& keeper) {
+                  const CausticsKeeper& keeper) {
   const double omega = 2.0 * pi * frequency;
   const double wavelength = solver.environment().water.at(receiver_depth).c / frequency;
   const double reach = std::min(0.5 * range, 30.0 * std::cbrt(wavelength * wavelength * range));
   if (!(reach > 0.0)) return;
-  const BranchTable table = solver.table(source_depth, receiver_depth, limits);
+  // Ends are rounded, so that those of a leg that moves by metres have an interval in common.
+  const double step = 0.125 * std::exp2(std::ceil(std::log2(reach)));
+  const CausticsNeed need{.source_depth = source_depth,
+                          .receiver_depth = receiver_depth,
+                          .frequency = frequency,
+                          .nearest = std::max(0.0, std::floor((range - reach) / step) * step),
+                          .furthest = std::ceil((range + reach) / step) * step};
+  const CausticsMaker make = [&] { return std::make_shared<Caustics>(solver, need, limits); };
+  const std::shared_ptr<const Caustics> caustics = keeper ? keeper(need, make) : make();
   const Arrivals rays = found;
-  for (const Fold& fold : folds_near(table, range, reach, omega)) {
+  for (std::size_t i = 0; i < caustics->folds().size(); ++i) {
+    const Fold& fold = caustics->folds()[i];
+    if (std::abs(fold.range - range) > reach) continue;
     const double away = fold.side * (range - fold.range), about = away / fold.scale;
     if (about > lit || about < dark) continue;
     const auto pair = pair_about(fold, rays);
@@ -241,25 +285,9 @@ void put_caustics(const EigenraySolver& solver, double source_depth, double rece
       if (of_the_fold(field.zeta, about)) replace(field);
       continue;
     }
-    const FoldMaker make = [&] {
-      return std::make_shared<FoldField>(solver, source_depth, receiver_depth, fold, frequency,
-                                         limits);
-    };
-    const std::shared_ptr<const FoldField> about_fold =
-        keeper ? keeper({.source_depth = source_depth,
-                         .receiver_depth = receiver_depth,
-                         .frequency = frequency,
-                         .range = fold.range,
-                         .side = fold.side,
-                         .scale = fold.scale,
-                         .launch = fold.launch,
-                         .surface_bounces = fold.surface_bounces,
-                         .bottom_bounces = fold.bottom_bounces,
-                         .vertices = fold.vertices},
-                        make)
-               : make();
-    if (!about_fold->known()) continue;
-    const auto there = about_fold->at(away);
+    const FoldField& about_fold = caustics->field(i, solver);
+    if (!about_fold.known()) continue;
+    const auto there = about_fold.at(away);
     if (!there) continue;
     const UniformPair& field = *there;
     if (pair && away > 0.0) {
@@ -268,7 +296,7 @@ void put_caustics(const EigenraySolver& solver, double source_depth, double rece
     }
     const double apart = field.zeta > 0.0 ? 2.0 / 3.0 * std::pow(field.zeta, 1.5) / omega : 0.0;
     for (const auto& [index, sign] : {std::pair{0, -1.0}, {1, 1.0}}) {
-      Arrival path = about_fold->nearest()[std::size_t(index)];
+      Arrival path = about_fold.nearest()[std::size_t(index)];
       path.delay = field.delay + sign * apart;
       make_wave(path, field.part(sign, omega, path.delay) / path.amplitude);
       path.launch_elevation = field.launch;

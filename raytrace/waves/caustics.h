@@ -8,20 +8,19 @@
 
 namespace asdic::detail {
 
-/// Field about the place at the receiver's depth where two rays meet at a caustic.
-class FoldField;
-[[nodiscard]] std::size_t bytes_of(const FoldField& field) noexcept;
+/// Caustics at the receiver's depth in an interval of ranges, and the fields about them.
+class Caustics;
+[[nodiscard]] std::size_t bytes_of(const Caustics& caustics) noexcept;
 
-/// All that decides a FoldField of one ocean, except the limits of its paths.
-struct FoldNeed {
+/// All that decides the Caustics of one ocean, except the limits of its paths.
+struct CausticsNeed {
   double source_depth, receiver_depth, frequency;
-  double range, side, scale, launch;  ///< of the caustic
-  int surface_bounces, bottom_bounces, vertices;
+  double nearest, furthest;  ///< ranges [m]
 };
-using FoldMaker = std::function<std::shared_ptr<FoldField>()>;
+using CausticsMaker = std::function<std::shared_ptr<Caustics>()>;
 /// Gives what is known, or makes it and keeps it.
-using FoldKeeper =
-    std::function<std::shared_ptr<const FoldField>(const FoldNeed&, const FoldMaker&)>;
+using CausticsKeeper =
+    std::function<std::shared_ptr<const Caustics>(const CausticsNeed&, const CausticsMaker&)>;
 
 /// Gives pairs of rays that meet at a smooth caustic the amplitudes that waves have there, and adds
 /// such pairs on its dark side: Airy's function and its derivative instead of amplitudes that grow
@@ -32,9 +31,9 @@ using FoldKeeper =
 /// beyond the caustic (50 dB) there is nothing. Left as they are: pairs next to the end of their
 /// family, and three rays or more that meet.
 /// \param solver  layered()   \param found  all eigenrays of these places within the limits
-/// \param keeper  fields depend on the depths, not on the range; without it none is kept
+/// \param keeper  caustics of one interval serve all its ranges; without it none are kept
 void put_caustics(const EigenraySolver& solver, double source_depth, double receiver_depth,
                   double range, double frequency, const PathLimits& limits, Arrivals& found,
-                  const FoldKeeper& keeper = {});
+                  const CausticsKeeper& keeper = {});
 
 }  // namespace asdic::detail
