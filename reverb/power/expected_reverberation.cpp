@@ -4,7 +4,6 @@
 #include <cmath>
 #include <tuple>
 
-#include "core/grouped.h"
 #include "core/mixed_bits.h"
 #include "raytrace/parallel/parallel.h"
 #include "reverb/power/path_interference.h"
@@ -14,25 +13,18 @@ namespace {
 
 constexpr std::size_t rings_together = 64;  // rings that one task works through
 
-/// Runs f(ring, scratch, out) over every `step`-th ring in parallel. \param all  gets what they put
-/// out, in their order, behind what is there
+/// Runs f(ring, scratch, out) over every `step`-th ring in parallel. \return what they put out, in
+/// their order
 template <class Item, class F>
-void over_rings(std::uint32_t rings, std::uint32_t step, std::vector<Item>& all, F&& f) {
+std::vector<std::vector<Item>> over_rings(std::uint32_t rings, std::uint32_t step, F&& f) {
   const std::size_t visited = (rings + step - 1) / step;
-  const std::size_t tasks = (visited + rings_together - 1) / rings_together;
-  std::vector<std::vector<Item>> parts(tasks);
-  in_parallel(tasks, [&](std::size_t b) {
+  std::vector<std::vector<Item>> parts((visited + rings_together - 1) / rings_together);
+  in_parallel(parts.size(), [&](std::size_t b) {
     PathPairs scratch;
     for (std::size_t i = b * rings_together; i < std::min(visited, (b + 1) * rings_together); ++i)
       f(static_cast<std::uint32_t>(i * step), scratch, parts[b]);
   });
-  std::size_t total = all.size();
-  for (const auto& part : parts) total += part.size();
-  all.reserve(total);
-  for (auto& part : parts) {
-    all.insert(all.end(), part.begin(), part.end());
-    part = {};
-  }
+  return parts;
 }
 
 /// Rings so near each other are sampled only once that eight still lie within a segment.
@@ -193,39 +185,53 @@ struct Middles {
   }
 };
 
-std::vector<Found> pairs_at_middles(std::span<const ScatteringField> fields, double segment) {
-  std::vector<Found> all;
+/// Of one field, by some rings together. There are millions of pairs, so they are not copied.
+using FoundPairs = std::vector<std::vector<Found>>;
+
+std::vector<FoundPairs> pairs_at_middles(std::span<const ScatteringField> fields, double segment) {
+  std::vector<FoundPairs> all;
   std::uint32_t first_place = 0;
   for (const ScatteringField& field : fields) {
     const Middles middles(field, first_place, segment);
-    over_rings<Found>(field.grid.rings, middles.step, all,
-                      [&](std::uint32_t ring, PathPairs& pairs, std::vector<Found>& out) {
-                        middles.find(ring, pairs, out);
-                      });
+    all.push_back(
+        over_rings<Found>(field.grid.rings, middles.step,
+                          [&](std::uint32_t ring, PathPairs& pairs, std::vector<Found>& out) {
+                            middles.find(ring, pairs, out);
+                          }));
     first_place += field.grid.rings * middles.count();
   }
   return all;
 }
 
+template <class Visit>
+void for_each_pair(const std::vector<FoundPairs>& all, const Visit& visit) {
+  for (const FoundPairs& of_field : all)
+    for (const std::vector<Found>& part : of_field)
+      for (const Found& found : part) visit(found);
+}
+
 /// Below which all that is left out of a segment is a hundred-thousandth of its power.
-std::vector<double> least_power(const std::vector<Found>& all, double segment) {
+std::vector<double> least_power(const std::vector<FoundPairs>& all, double segment) {
   constexpr double left_out = 1e-5;
   struct Entry {
     double power, share;
   };
-  std::size_t segments = 0;
-  std::vector<std::size_t> segment_of;
-  segment_of.reserve(all.size());
-  for (const Found& f : all) {
-    segment_of.push_back(static_cast<std::size_t>(f.sample.delay / segment));
-    segments = std::max(segments, segment_of.back() + 1);
-  }
-  const Grouped by_segment = grouped(segment_of, segments);
-  std::vector<double> least(segments, 0.0);
-  std::vector<Entry> here;
-  for (std::size_t s = 0; s < segments; ++s) {
-    here.clear();
-    for (const std::size_t i : by_segment.of(s)) here.push_back({all[i].ring_power, all[i].share});
+  const auto segment_of = [&](const Found& f) {
+    return static_cast<std::size_t>(f.sample.delay / segment);
+  };
+  std::vector<std::size_t> counts;
+  for_each_pair(all, [&](const Found& f) {
+    if (segment_of(f) >= counts.size()) counts.resize(segment_of(f) + 1, 0);
+    ++counts[segment_of(f)];
+  });
+  std::vector<std::vector<Entry>> by_segment(counts.size());
+  for (std::size_t s = 0; s < counts.size(); ++s) by_segment[s].reserve(counts[s]);
+  for_each_pair(all, [&](const Found& f) {
+    by_segment[segment_of(f)].push_back({f.ring_power, f.share});
+  });
+  std::vector<double> least(counts.size(), 0.0);
+  for (std::size_t s = 0; s < least.size(); ++s) {
+    std::vector<Entry>& here = by_segment[s];
     std::sort(here.begin(), here.end(), [](const Entry& a, const Entry& b) {
       return std::tie(a.power, a.share) < std::tie(b.power, b.share);
     });
@@ -238,6 +244,7 @@ std::vector<double> least_power(const std::vector<Found>& all, double segment) {
       if (dropped > left_out * total) break;
       least[s] = e.power;
     }
+    here = {};
   }
   return least;
 }
@@ -249,12 +256,13 @@ double count_pairs(std::span<const ScatteringField> fields, double segment, std:
     const Middles middles(field, 0, segment);
     const std::uint32_t visited = (field.grid.rings + middles.step - 1) / middles.step;
     const std::uint32_t every = std::max(1U, visited / at);
-    std::vector<Found> counted;
-    over_rings<Found>(field.grid.rings, every * middles.step, counted,
-                      [&](std::uint32_t ring, PathPairs& found, std::vector<Found>& out) {
-                        middles.find(ring, found, out);
-                      });
-    pairs += double(every) * static_cast<double>(counted.size());
+    const FoundPairs counted =
+        over_rings<Found>(field.grid.rings, every * middles.step,
+                          [&](std::uint32_t ring, PathPairs& found, std::vector<Found>& out) {
+                            middles.find(ring, found, out);
+                          });
+    for (const std::vector<Found>& part : counted)
+      pairs += double(every) * static_cast<double>(part.size());
   }
   return pairs;
 }
@@ -263,8 +271,8 @@ double count_pairs(std::span<const ScatteringField> fields, double segment, std:
 
 MemoryNeed ExpectedReverberation::need(std::span<const ScatteringField> fields,
                                        double pulse_duration) {
-  // Put together twice; then their segments, their order and those that are kept are beside them.
-  constexpr double a_pair = 2.0 * sizeof(Found) + 2.0 * sizeof(std::size_t);
+  // Beside them are the powers in their segments and, later, those that are kept.
+  constexpr double a_pair = sizeof(Found) + sizeof(Sample);
   constexpr double little = 100e6;               // [bytes]
   constexpr std::uint32_t few = 4, enough = 64;  // rings looked at
   const double segment = 0.25 * pulse_duration;
@@ -281,20 +289,25 @@ MemoryNeed ExpectedReverberation::need(std::span<const ScatteringField> fields,
 ExpectedReverberation::ExpectedReverberation(std::span<const ScatteringField> fields,
                                              double pulse_duration) {
   limits.segment = 0.25 * pulse_duration;
-  const std::vector<Found> all = pairs_at_middles(fields, limits.segment);
+  std::vector<FoundPairs> all = pairs_at_middles(fields, limits.segment);
   limits.least = least_power(all, limits.segment);
+  const auto counts = [&](const Found& f) { return f.ring_power > limits.at(f.sample.delay); };
+  std::size_t kept = 0;
+  for_each_pair(all, [&](const Found& f) { kept += counts(f) ? 1 : 0; });
+  samples.reserve(kept);
   std::vector<double> of_ring;  // returns of the field in hand
-  std::size_t next = 0;
   std::uint32_t first_place = 0;
   for (std::size_t field = 0; field < fields.size(); ++field) {
     const std::uint32_t rings = fields[field].grid.rings;
     const auto count = static_cast<std::uint32_t>(fields[field].sample_sectors().size());
     of_ring.assign(rings, 0.0);
-    for (; next < all.size() && all[next].sample.place < first_place + rings * count; ++next) {
-      const Found& f = all[next];
-      if (f.ring_power <= limits.at(f.sample.delay)) continue;
-      samples.push_back(f.sample);
-      of_ring[(f.sample.place - first_place) / count] += f.share * f.scatterers;
+    for (std::vector<Found>& part : all[field]) {
+      for (const Found& f : part) {
+        if (!counts(f)) continue;
+        samples.push_back(f.sample);
+        of_ring[(f.sample.place - first_place) / count] += f.share * f.scatterers;
+      }
+      part = {};
     }
     // What was found at one ring belongs to those that it stands for.
     const std::uint32_t step = sample_step(fields[field], limits.segment);
