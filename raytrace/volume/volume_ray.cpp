@@ -542,10 +542,9 @@ class VolumeTracer::Run {
                              17253.0 / 339200.0 * k5 + 22.0 / 525.0 * k6 - 1.0 / 40.0 * *last);
     const double tube = std::max(1.0, y.segment<6>(6).norm());
     // Absorption may jump from layer to layer, as that of biology does.
-    *error =
-        std::max({e.segment<3>(0).norm() / limits_.tolerance,
-                  e.segment<6>(6).norm() / (tube * std::max(1e-9, 1e-3 * limits_.tolerance)),
-                  std::abs(e[19]) / tolerable_nepers});
+    *error = std::max({e.segment<3>(0).norm() / limits_.tolerance,
+                       e.segment<6>(6).norm() / (tube * std::max(1e-9, 1e-3 * limits_.tolerance)),
+                       std::abs(e[19]) / tolerable_nepers});
     return end;
   }
 

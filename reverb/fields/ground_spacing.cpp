@@ -5,7 +5,7 @@
 namespace asdic::detail {
 namespace {
 
-constexpr double finest_ground = 1.0;       // [m]
+constexpr double finest_ground = 1.0;        // [m]
 constexpr double finest_share = 1.0 / 16.0;  // of what the pulse resolves, to bound the cost
 
 }  // namespace

@@ -76,7 +76,8 @@ std::optional<BandLimitedPulse> cut(const Sound& sound, const Segment& segment, 
                           : 0.0);
     largest = std::max(largest, std::abs(samples.back()));
   }
-  if (largest < 1e-6) return std::nullopt;
+  constexpr double inaudible = 3e-5;  // of the peak, −90 dB
+  if (largest < inaudible) return std::nullopt;
   return BandLimitedPulse({samples, -static_cast<double>(reach) / rate, rate},
                           sound.wave.centre_frequency(), step + 12.0 / rate, half_band);
 }
@@ -102,10 +103,12 @@ class MovingLeg {
  public:
   using Place = std::function<Kinematics(double since)>;
 
-  MovingLeg(const EchoContext& context, const MovingPaths& moving, Place sender, Carried receiver,
-            std::uint64_t ends)
+  /// \param with_waves  whether paths may be waves
+  MovingLeg(const EchoContext& context, const MovingPaths& moving, bool with_waves, Place sender,
+            Carried receiver, std::uint64_t ends)
       : context_(context),
         moving_(moving),
+        with_waves_(with_waves),
         sender_(std::move(sender)),
         receiver_(std::move(receiver)),
         ends_(ends) {}
@@ -113,6 +116,8 @@ class MovingLeg {
   /// All its paths for what leaves then. \param sent  since the ping [s]
   std::vector<LegPath> at(double sent) {
     const Kinematics from = sender_(sent);
+    // Rays become waves on the way and waves rays, which following a path does not show.
+    if (with_waves_) known_.clear();
     Way way = moving_.way(from.position, sent, receiver_.track, receiver_.offset, known_);
     known_ = std::exchange(way.leg.arrivals, {});
     std::vector<LegPath> found;
@@ -158,6 +163,7 @@ class MovingLeg {
  private:
   const EchoContext& context_;
   const MovingPaths& moving_;
+  bool with_waves_;
   Place sender_;
   Carried receiver_;
   std::uint64_t ends_;
@@ -195,6 +201,7 @@ class TwoSteps {
   [[nodiscard]] MovingPaths paths_at(double frequency) const {
     return {context_.paths, limits_, frequency, geometry_.time(), 1e-7, context_.reuse};
   }
+  [[nodiscard]] bool with_waves() const { return context_.paths.layered() && limits_.diffraction; }
   [[nodiscard]] double highest() const {
     return context_.pulse->centre_frequency() + 0.5 * context_.pulse->bandwidth_40db();
   }
@@ -285,7 +292,7 @@ class TwoSteps {
     const Sound pulse{.wave = filtered_pulse(whole), .middle = 0.5 * context_.pulse->duration()};
     const MovingPaths moving = paths_at(part != nullptr ? part->frequency : context_.frequency);
     MovingLeg leg(
-        context_, moving, [&](double since) { return geometry_.source_at(since); },
+        context_, moving, with_waves(), [&](double since) { return geometry_.source_at(since); },
         {.track = target_.track},
         mixed(static_cast<std::uint64_t>(geometry_.sent().transmitter),
               mixed(1, target_identity(scenario_, index_))));
@@ -397,7 +404,7 @@ class TwoSteps {
     std::vector<MovingLeg> legs;
     for (std::size_t n = 0; n < (own ? receivers_.phones.size() : 1); ++n)
       legs.emplace_back(
-          context_, moving, [&](double since) { return target_at(since); },
+          context_, moving, with_waves(), [&](double since) { return target_at(since); },
           geometry_.receiver(array, own ? static_cast<int>(n) : -1), ends);
     for_each_piece(
         struck,

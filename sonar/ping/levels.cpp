@@ -14,8 +14,8 @@ LevelMeter::LevelMeter(const Recording& recording, double pulse_duration)
     : start_(recording.start) {
   const double duration = static_cast<double>(recording.samples) / recording.sample_rate;
   // At least two samples: the mean over fewer depends on where they lie.
-  series_.time_step = std::max(
-      {std::min(pulse_duration, 0.05), duration / 20000.0, 2.0 / recording.sample_rate});
+  series_.time_step =
+      std::max({std::min(pulse_duration, 0.05), duration / 20000.0, 2.0 / recording.sample_rate});
   const auto steps = std::max<std::size_t>(
       1, static_cast<std::size_t>(std::ceil(duration / series_.time_step - 1e-9)));
   for (auto* part : {&series_.echo, &series_.reverberation, &series_.noise})

@@ -16,7 +16,8 @@ def table(s, interpolation, p):
 
 @law
 def node_on_a_line(s, p):
-    """A sample put on a straight piece of the profile changes nothing. Layers of waves are cut at samples: 1 % of a leg."""
+    """A sample put on a straight piece of the profile changes nothing. Layers of waves are cut at samples, by which each leg of
+    each run may be 1 % off: 4 %."""
     s = plain(s)
     e = s["environment"]
     law = p("interpolation", ["c-linear", "n2-linear"])
@@ -31,7 +32,7 @@ def node_on_a_line(s, p):
     c = c0 + share * (c1 - c0) if law == "c-linear" else (c0 ** -2 + share * (c1 ** -2 - c0 ** -2)) ** -0.5
     water["depth"].insert(piece + 1, z0 + share * (z1 - z0))
     water["speed"].insert(piece + 1, c)
-    alike(first, ping(s2), s, 0.02, f"a node at {share:g} of piece {piece}, {law}")
+    alike(first, ping(s2), s, 0.04, f"a node at {share:g} of piece {piece}, {law}")
 
 
 @law
@@ -46,7 +47,7 @@ def isovelocity_as_a_table(s, p):
     depth = water_depth(s)
     s2["environment"]["sound_speed"] = {"kind": "table", "interpolation": kind, "depth": [0.0, 0.3 * depth, 0.7 * depth, 1.2 * depth],
                                         "speed": [1500.0] * 4}
-    alike(first, ping(s2), s, 0.02, f"a table ({kind}) of one speed")
+    alike(first, ping(s2), s, 0.04, f"a table ({kind}) of one speed")
 
 
 @law

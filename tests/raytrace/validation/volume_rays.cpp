@@ -94,13 +94,12 @@ INSTANTIATE_TEST_SUITE_P(, LayeredVolume,
                                          Leg{77.0, 100.0, 100.0, 4000.0},
                                          Leg{140.0, 50.0, 2000.0, 500.0}));
 
-// Layers of fish have sharp edges, at which absorption jumps in the middle of a step: rays of a duct
-// that pass them many times lose what they lose in planes.
+// Layers of fish have sharp edges, at which absorption jumps in the middle of a step: rays of a
+// duct that pass them many times lose what they lose in planes.
 TEST(VolumeTracer, AbsorptionMayJump) {
-  Environment sea =
-      layered_sea(SoundSpeedProfile::table(std::array{0.0, 50.84, 152.52},
-                                           std::array{1500.0, 1488.0, 1501.0},
-                                           Interpolation::n2_linear));
+  Environment sea = layered_sea(SoundSpeedProfile::table(std::array{0.0, 50.84, 152.52},
+                                                         std::array{1500.0, 1488.0, 1501.0},
+                                                         Interpolation::n2_linear));
   sea.bottom.depth = 152.0;
   sea.biology = {{.top = 25.42, .bottom = 50.84, .resonance = 200.0, .strength = 0.5}};
   const TransectVolume volume(sea, {.x = 0.0, .y = 0.0, .bearing = 0.0});

@@ -358,7 +358,7 @@ def overtaken(truth):
             at = round((block.time - begin) * rate)
             check(np.array_equal(block.samples, rows[:, at:at + block.samples.shape[1]]), "bits of the truth")
         check([b.number for b in heard] == sorted(b.number for b in heard) and heard[0].number >= number, "in order")
-    check(sum(b.lost for b in rest) > 0, "it was overtaken, and knows")
+    check(sum(b.lost for b in [first, *rest]) > 0, "it was overtaken, and knows")
 
 
 def keeps_what_is_not_its_own():
