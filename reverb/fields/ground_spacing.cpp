@@ -5,17 +5,14 @@
 namespace asdic::detail {
 namespace {
 
-constexpr double finest_ground = 1.0;        // [m]
-constexpr double finest_share = 1.0 / 16.0;  // of what the pulse resolves, to bound the cost
+constexpr double finest_ground = 1.0;  // [m]
 
 }  // namespace
 
 double ground_spacing(const ReverberationSettings& settings, const Environment& ocean,
-                      double bandwidth, double sound_speed, double height) {
+                      double bandwidth, double sound_speed) {
   if (settings.ground_spacing) return *settings.ground_spacing;
-  const double resolved = sound_speed / (4.0 * bandwidth);  // delay 2Δr/c = 1/(2B)
-  const double by_pulse =
-      std::min(resolved, std::max({2.0 * height, finest_share * resolved, finest_ground}));
+  const double by_pulse = sound_speed / (4.0 * bandwidth);  // delay 2Δr/c = 1/(2B)
   const auto& shape = ocean.surface.shape;
   if (!shape || shape->ranges().size() < 2) return by_pulse;
   const double facet = (shape->ranges().back() - shape->ranges().front()) /

@@ -12,13 +12,8 @@ namespace asdic::detail {
 /// anywhere in their rings, so the mean intensity has no ripple whatever the spacing, and slow side
 /// lobes, which hold a hundredth of the sound, ask for no more (the −40 dB width of an unwindowed
 /// sweep of 200 Hz and 1 s is 790 Hz).
-///
-/// A source close to what scatters has rings no wider than twice its height over it, but up to 16
-/// in place of one: half of a flat boundary's sound comes from closer than about that height, and a
-/// wider ring would have a scatterer there in one ping of many.
 /// \param bandwidth  B [Hz]   \param sound_speed  at the surface [m/s]
-/// \param height  least distance of a source from a boundary that scatters [m]
 [[nodiscard]] double ground_spacing(const ReverberationSettings& settings, const Environment& ocean,
-                                    double bandwidth, double sound_speed, double height);
+                                    double bandwidth, double sound_speed);
 
 }  // namespace asdic::detail

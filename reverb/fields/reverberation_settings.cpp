@@ -78,8 +78,8 @@ void ReverberationSettings::describe(Fields& field) {
   field("synthesis", synthesis, "how the sound of scatterers is made");
   field("most_returns", most_returns, 1000, 1'000'000'000,
         "of a ping at one array; beyond, sectors are synthesised");
-  field(by_default("ground_spacing", "by the pulse's bandwidth and the source's height"),
-        ground_spacing, {.noun = "spacing", .unit = "m", .low = 0.01, .high = 1e5}, "of the rings");
+  field(by_default("ground_spacing", "by the bandwidth of the pulse"), ground_spacing,
+        {.noun = "spacing", .unit = "m", .low = 0.01, .high = 1e5}, "of the rings");
   SurfaceScatterers sea{*this};
   field("surface", sea, "what the surface scatters");
   auto ground =

@@ -159,9 +159,9 @@ ReverberationFields::ReverberationFields(const Scenario& scenario, const Propaga
     : scenario_(scenario),
       paths_(paths),
       fans_(paths),
-      spacing_(asdic::detail::ground_spacing(
-          scenario.reverberation, scenario.environment, widest.bandwidth_99(),
-          speed_at_surface(scenario, paths), height_over_scatterers(scenario))),
+      spacing_(asdic::detail::ground_spacing(scenario.reverberation, scenario.environment,
+                                             widest.bandwidth_99(),
+                                             speed_at_surface(scenario, paths))),
       fastest_water_(asdic::detail::fastest_water(scenario)),
       resolved_sectors_(scenario.reverberation.resolve_azimuth
                             ? resolved_sectors(scenario, speed_at_surface(scenario, paths))

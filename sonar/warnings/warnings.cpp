@@ -506,8 +506,7 @@ std::string coarse_rings(const Scenario& scenario) {
     const double c = speed_at(scenario, platform.track.at(0.0).position);
     const Pulse pulse(pulse_of(scenario, static_cast<int>(t)));
     const double duration = pulse.duration();
-    const double spacing =
-        ground_spacing(sea, scenario.environment, pulse.bandwidth_99(), c, height);
+    const double spacing = ground_spacing(sea, scenario.environment, pulse.bandwidth_99(), c);
     if (sea.ground_spacing && 2.0 * spacing > c * duration)
       return formatted(
           "reverberation.ground_spacing: between rings %g m apart reverberation is received "

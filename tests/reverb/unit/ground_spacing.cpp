@@ -13,19 +13,9 @@ constexpr double bandwidth = 50.0, c = 1500.0;  // [Hz], [m/s]: c/(4B) = 7.5 m
 TEST(GroundSpacing, IsTheSettingElseOfTheBandwidth) {
   ReverberationSettings settings;
   const Environment ocean;
-  EXPECT_DOUBLE_EQ(ground_spacing(settings, ocean, bandwidth, c, 100.0), 7.5);
+  EXPECT_DOUBLE_EQ(ground_spacing(settings, ocean, bandwidth, c), 7.5);
   settings.ground_spacing = 40.0;
-  EXPECT_DOUBLE_EQ(ground_spacing(settings, ocean, bandwidth, c, 100.0), 40.0);
-}
-
-TEST(GroundSpacing, IsTwiceTheHeightOfASourceCloseToABoundary) {
-  const auto spacing = [](double height) {
-    return ground_spacing({}, Environment{}, bandwidth, c, height);
-  };
-  EXPECT_DOUBLE_EQ(spacing(3.75), 7.5);
-  EXPECT_DOUBLE_EQ(spacing(2.0), 4.0);
-  EXPECT_DOUBLE_EQ(spacing(0.0), 1.0);  // at the boundary itself
-  EXPECT_DOUBLE_EQ(ground_spacing({}, Environment{}, 0.1 * bandwidth, c, 0.0), 75.0 / 16.0);
+  EXPECT_DOUBLE_EQ(ground_spacing(settings, ocean, bandwidth, c), 40.0);
 }
 
 // Facets of 3 m are finer than the bandwidth asks for, those of 10 cm finer than any grid.
@@ -34,7 +24,7 @@ TEST(GroundSpacing, SamplesASurfaceWithAShapeFacetByFacet) {
     const std::array<double, 3> ranges = {0.0, facet, 2.0 * facet}, depths = {0.0, 0.05, 0.0};
     Environment ocean;
     ocean.surface.shape = BoundaryShape(ranges, depths, ShapeInterpolation::piecewise_linear);
-    return ground_spacing({}, ocean, bandwidth, c, 100.0);
+    return ground_spacing({}, ocean, bandwidth, c);
   };
   EXPECT_DOUBLE_EQ(spacing(100.0), 7.5);
   EXPECT_DOUBLE_EQ(spacing(3.0), 3.0);
