@@ -21,7 +21,7 @@ namespace asdic::detail {
 namespace {
 
 // Of a sequence by itself. Schedules that come back to a place or a waveform do so sooner.
-constexpr std::size_t own_bytes = std::size_t{320} << 20;
+constexpr std::size_t own_bytes = std::size_t{448} << 20;
 constexpr std::uint64_t own_pings = 64;
 
 std::uint64_t next_identity() {
