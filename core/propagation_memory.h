@@ -44,7 +44,7 @@ enum class Kept : std::uint64_t {
   noise_factors,
   mean_reverberation,
   branch_waves,
-  fold_field
+  caustics
 };
 
 /// All the numbers that decide a result, bit for bit: best made of what the function that finds it

@@ -13,7 +13,7 @@ ctest --preset release -j "$(nproc)" "$@" || {
   log=build/release/Testing/Temporary
   while IFS=: read -r _ name; do  # what each failed test printed last, where a long log ends
     echo "== $name"
-    sed -n "/^\"$name\" start time/,/^<end of output>/p" $log/LastTest.log | tail -n 40
+    sed -n "\\|^\"$name\" start time|,/^<end of output>/p" $log/LastTest.log | tail -n 40
   done < $log/LastTestsFailed.log
   exit "$failed"
 }

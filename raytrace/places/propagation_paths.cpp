@@ -313,7 +313,7 @@ Arrivals PropagationPaths::search_plane(const Vec3& from, const Vec3& to, double
     if (limits.diffraction) {
       put_caustics(*solver, from.z(), to.z(), range, frequency, limits, found,
                    [&](const CausticsNeed& need, const CausticsMaker& make) {
-                     return memory_->remember(key(Kept::fold_field, need, limits), make,
+                     return memory_->remember(key(Kept::caustics, need, limits), make,
                                               [](const Caustics& made) { return bytes_of(made); });
                    });
       put_waves(

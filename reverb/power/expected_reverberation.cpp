@@ -185,7 +185,7 @@ struct Middles {
   }
 };
 
-/// Of one field, by some rings together. There are millions of pairs, so they are not copied.
+/// Pairs of one field, some rings together. They are millions, so they are not copied.
 using FoundPairs = std::vector<std::vector<Found>>;
 
 std::vector<FoundPairs> pairs_at_middles(std::span<const ScatteringField> fields, double segment) {

@@ -13,7 +13,7 @@ namespace asdic::detail {
 LevelMeter::LevelMeter(const Recording& recording, double pulse_duration)
     : start_(recording.start) {
   const double duration = static_cast<double>(recording.samples) / recording.sample_rate;
-  // At least two samples: the mean over fewer depends on where they lie.
+  // The mean over fewer than two samples would depend on where they lie.
   series_.time_step =
       std::max({std::min(pulse_duration, 0.05), duration / 20000.0, 2.0 / recording.sample_rate});
   const auto steps = std::max<std::size_t>(

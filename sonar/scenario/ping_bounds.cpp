@@ -88,18 +88,4 @@ double doppler_bound(const Scenario& scenario) {
          rough_sea_doppler(scenario);
 }
 
-double height_over_scatterers(const Scenario& scenario) {
-  const ReverberationSettings& sea = scenario.reverberation;
-  const Environment& ocean = scenario.environment;
-  double least = infinity;
-  for (const Transmitter& transmitter : scenario.transmitters) {
-    const Platform& platform = scenario.platforms[static_cast<std::size_t>(transmitter.platform)];
-    const double depth = platform.track.at(0.0).position.z();
-    if (sea.surface_scatters) least = std::min(least, depth - ocean.surface.depth);
-    if (!scenario.area && (sea.bottom || !sea.seabed.empty()))
-      least = std::min(least, ocean.bottom.depth - depth);
-  }
-  return std::max(least, 0.0);
-}
-
 }  // namespace asdic::detail

@@ -15,8 +15,4 @@ namespace asdic::detail {
 /// The same of all that is heard of a scenario's ocean about its first platform.
 [[nodiscard]] double fastest_water(const Scenario& scenario);
 
-/// Least distance of a transmitter from a boundary that scatters [m], when the first ping leaves.
-/// Infinite where none does; the bottom of an area is left out.
-[[nodiscard]] double height_over_scatterers(const Scenario& scenario);
-
 }  // namespace asdic::detail

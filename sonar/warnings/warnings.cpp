@@ -493,17 +493,30 @@ std::string overlapping_records(const Scenario& scenario) {
   return text;
 }
 
+/// Distance of a place from the nearest boundary that scatters [m]; infinite where none does. The
+/// bottom of an area is left out.
+static double height_over_scatterers(const Scenario& scenario, const Vec3& place) {
+  const ReverberationSettings& sea = scenario.reverberation;
+  const Environment& ocean = scenario.environment;
+  const double along = scenario.transect.range_of(place.x(), place.y());
+  double least = infinity;
+  if (sea.surface_scatters) least = std::min(least, place.z() - ocean.surface.depth_at(along));
+  if (!scenario.area && (sea.bottom || !sea.seabed.empty()))
+    least = std::min(least, ocean.bottom.depth_at(along) - place.z());
+  return least;
+}
+
 std::string coarse_rings(const Scenario& scenario) {
   const ReverberationSettings& sea = scenario.reverberation;
   const bool scatters =
       sea.surface_scatters || sea.bottom || !sea.seabed.empty() || !sea.volume.empty();
   if (!sea.enabled || !scatters) return "";
   constexpr double too_wide = 8.0;  // re the height: about one scatterer of 36 is that close
-  const double height = height_over_scatterers(scenario);
   for (std::size_t t = 0; t < scenario.transmitters.size(); ++t) {
     const Platform& platform =
         scenario.platforms[static_cast<std::size_t>(scenario.transmitters[t].platform)];
-    const double c = speed_at(scenario, platform.track.at(0.0).position);
+    const Vec3 place = platform.track.at(0.0).position;
+    const double c = speed_at(scenario, place), height = height_over_scatterers(scenario, place);
     const Pulse pulse(pulse_of(scenario, static_cast<int>(t)));
     const double duration = pulse.duration();
     const double spacing = ground_spacing(sea, scenario.environment, pulse.bandwidth_99(), c);

@@ -186,8 +186,7 @@ constexpr char waves_along_a_boundary[] =
     "is reached by waves along a boundary, which are no rays; their sound";
 constexpr char hidden_direct_sound[] =
     "has rays off the boundaries, and no direct ray goes to or from it; the direct sound that "
-    "waves "
-    "carry there";
+    "waves carry there";
 
 std::string line_of_reflection(double error, const std::string& whose) {
   constexpr double tolerable_error = 0.12;  // 1 dB

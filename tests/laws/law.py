@@ -116,7 +116,7 @@ def everywhere(s, change):
 # --- sizes -----------------------------------------------------------------------------------------------------------
 
 def duration(s):
-    """Of the pulse [s]."""
+    """Duration of the pulse [s]."""
     p = s["pulse"]
     return p["duration"] if "duration" in p else len(p["samples"]) / p["sample_rate"]
 

@@ -69,16 +69,12 @@ def wind_only_takes(s, p):
 
 @law
 def narrow_is_wide(s, p):
-    """Of a tone of 4000 periods both bands are one frequency. Its band is f/2000: path by path amplitudes and phases
-    change by less than 5 % over it, where nothing resonates within (layers are at most a few wavelengths thick).
-
-    A path between fast boundaries holds waves along them, which come sooner by most of its delay, some twenty periods
-    there and back: over the band their phases change by 2*pi*20/2000, 0.06, and in the mean by a third of that.
-    """
+    """Of a tone of a thousand periods both bands are one frequency. Its band is f/500: path by path amplitudes and phases
+    change by less than 5 % over it, where nothing resonates within (layers are at most a few wavelengths thick)."""
     s = one_place(plain(s))
     hz = s["_hz"]
-    s["pulse"] = {"kind": "cw", "frequency": hz, "duration": 4000.0 / hz, "window": "hann"}
-    s["pings"] = {"recording_duration": s["_span"] + 4000.0 / hz, "samples": "baseband"}
+    s["pulse"] = {"kind": "cw", "frequency": hz, "duration": 1000.0 / hz, "window": "hann"}
+    s["pings"] = {"recording_duration": s["_span"] + 1000.0 / hz, "samples": "baseband"}
     s["propagation"]["band"] = "narrow"
     narrow = ping(s)
     s2 = copied(s)
