@@ -243,7 +243,7 @@ std::complex<double> noise_coherence(NoiseCoherence kind, const NoiseDirections&
 CoherenceFactors::CoherenceFactors(NoiseCoherence kind, const NoiseDirections& directions,
                                    std::span<const Vec3> phones, double sound_speed, double first,
                                    double step, std::size_t bins)
-    : phones_(phones.size()), node_of_(bins), fraction_(bins) {
+    : phones_(phones.size()) {
   const Separations separations(phones);
   const double longest =
       2.0 * pi * (first + static_cast<double>(bins) * step) / sound_speed * separations.reach();
@@ -303,14 +303,6 @@ CoherenceFactors::CoherenceFactors(NoiseCoherence kind, const NoiseDirections& d
       if (std::abs(factor_[pair * n + i].imag()) > 1e-7F) real_ = false;
     }
   }
-  std::size_t k = 0;
-  for (std::size_t bin = 0; bin < bins; ++bin) {
-    while (k + 2 < n && nodes_[k + 1] <= bin) ++k;
-    node_of_[bin] = k;
-    fraction_[bin] =
-        n < 2 ? 0.0F
-              : static_cast<float>(bin - nodes_[k]) / static_cast<float>(nodes_[k + 1] - nodes_[k]);
-  }
 }
 
 std::shared_ptr<const CoherenceFactors> CoherenceFactors::recalled(
@@ -327,19 +319,33 @@ std::shared_ptr<const CoherenceFactors> CoherenceFactors::recalled(
 }
 
 std::size_t CoherenceFactors::bytes() const noexcept {
-  return sizeof *this + (nodes_.capacity() + node_of_.capacity()) * sizeof(std::size_t) +
-         fraction_.capacity() * sizeof(float) + factor_.capacity() * sizeof(factor_[0]);
+  return sizeof *this + nodes_.capacity() * sizeof(nodes_[0]) +
+         factor_.capacity() * sizeof(factor_[0]);
 }
 
 void CoherenceFactors::element(std::size_t row, std::size_t column, std::size_t first,
                                std::span<float> real, std::span<float> imaginary) const noexcept {
-  const std::size_t n = nodes_.size(), more = n > 1 ? 1 : 0;
+  const std::size_t n = nodes_.size();
   const std::complex<float>* at = factor_.data() + (row * (row + 1) / 2 + column) * n;
-  for (std::size_t i = 0; i < real.size(); ++i) {
-    const std::complex<float>* node = at + node_of_[first + i];
-    const float t = fraction_[first + i];
-    real[i] = node[0].real() + t * (node[more].real() - node[0].real());
-    imaginary[i] = node[0].imag() + t * (node[more].imag() - node[0].imag());
+  if (n < 2) {
+    std::ranges::fill(real, at->real());
+    std::ranges::fill(imaginary, at->imag());
+    return;
+  }
+  const std::size_t end = first + real.size();
+  const auto next = std::upper_bound(nodes_.begin() + 1, nodes_.end() - 1, first);
+  auto k = static_cast<std::size_t>(next - nodes_.begin()) - 1;
+  for (std::size_t bin = first; bin < end; ++k) {  // the straight piece from node k on
+    const std::size_t stop = k + 2 < n ? std::min(end, nodes_[k + 1]) : end;
+    const auto wide = static_cast<float>(nodes_[k + 1] - nodes_[k]);
+    const float re = at[k].real(), im = at[k].imag();
+    const float more_re = at[k + 1].real() - re, more_im = at[k + 1].imag() - im;
+    auto past = static_cast<std::int32_t>(bin - nodes_[k]);
+    for (; bin < stop; ++bin, ++past) {
+      const float t = static_cast<float>(past) / wide;
+      real[bin - first] = re + t * more_re;
+      imaginary[bin - first] = im + t * more_im;
+    }
   }
 }
 

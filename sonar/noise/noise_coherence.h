@@ -59,8 +59,6 @@ class CoherenceFactors {
   std::size_t phones_;
   bool real_ = true;
   std::vector<std::size_t> nodes_;           // bins, increasing
-  std::vector<std::size_t> node_of_;         // [bins] the node at or before
-  std::vector<float> fraction_;              // [bins] of the way to the next
   std::vector<std::complex<float>> factor_;  // [pairs × nodes], pair = row(row + 1)/2 + column
 };
 
