@@ -68,7 +68,10 @@ BranchWaves::BranchWaves(const Environment& ocean, const BranchNeed& need) {
   constexpr std::size_t piece = 16;
   in_parallel_chunks(window_.count, piece, [&](std::size_t begin, std::size_t end) {
     stop_point();
-    for (std::size_t j = begin; j < end; ++j) kernels_[j] = kernel(column, window_.at(j));
+    for (std::size_t j = begin; j < end; ++j) {
+      kernels_[j] = kernel(column, window_.at(j));
+      for (Complex& part : kernels_[j].first) part *= window_.factor(window_.at(j));
+    }
   });
 }
 
@@ -113,9 +116,10 @@ BranchWaves::Kernel BranchWaves::kernel(const WaveColumn& column, Complex xi) co
 std::array<std::vector<Complex>, 4> BranchWaves::pressures(double range, int cycles) const {
   std::array<std::vector<Complex>, 4> sums;
   for (std::vector<Complex>& sum : sums) sum.resize(std::size_t(cycles) + 1);
+  const std::vector<Complex> factors = window_.factors(range);
   for (std::size_t j = 0; j < kernels_.size(); ++j) {
     const Kernel& k = kernels_[j];
-    const Complex f = window_.factor(window_.at(j), range);
+    const Complex f = factors[j];
     for (std::size_t kind = 0; kind < sums.size(); ++kind) {
       Complex term = f * k.first[kind];
       for (Complex& sum : sums[kind]) sum += term, term *= k.cycle;

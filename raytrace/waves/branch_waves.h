@@ -71,7 +71,7 @@ class BranchWaves {
     [[nodiscard]] double resolved(double wavenumber) const noexcept;
     [[nodiscard]] bool is_level(double wavenumber) const noexcept;
   };
-  /// Integrand at one wavenumber.
+  /// Integrand at one wavenumber, times WaterWindow::factor().
   struct Kernel {
     std::array<std::complex<double>, 4> first;
     std::complex<double> cycle;

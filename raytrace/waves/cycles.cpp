@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "core/simd.h"
 #include "core/units.h"
 #include "raytrace/parallel/parallel.h"
 #include "raytrace/parallel/stop.h"
@@ -53,7 +54,9 @@ CycleWaves::CycleWaves(const Environment& ocean, double frequency, double source
   in_parallel_chunks(window_.count, piece, [&](std::size_t begin, std::size_t end) {
     for (std::size_t j = begin; j < end; ++j) {
       stop_point();
-      kernels_[j] = kernel(column, window_.at(j));
+      const Complex factor = window_.factor(window_.at(j));
+      Kernel& k = kernels_[j] = kernel(column, window_.at(j));
+      for (Complex* part : {&k.first, &k.next, &k.flat}) *part *= factor;
     }
   });
 }
@@ -113,16 +116,37 @@ CycleWaves::Kernel CycleWaves::kernel(const WaveColumn& column, Complex xi) cons
 }
 
 std::vector<Complex> CycleWaves::terms(std::size_t count, double range) const {
-  std::vector<Complex> sums(count + 1, 0.0);
-  for (std::size_t j = 0; j < kernels_.size(); ++j) {
-    const Complex f = window_.factor(window_.at(j), range);
-    const Kernel& k = kernels_[j];
-    sums[0] += f * k.first;
-    Complex term = f * k.next;
-    for (std::size_t n = 1; n < count; ++n, term *= k.cycle) sums[n] += term;
-    sums[count] += f * k.flat;
+  // Eight wavenumbers side by side, because the terms of one follow from each other.
+  constexpr std::size_t lanes = 8;
+  using Numbers = Lanes<double, lanes>;
+  struct Values {
+    Numbers re{}, im{};
+    void set(std::size_t lane, Complex z) { re[lane] = z.real(), im[lane] = z.imag(); }
+    void operator*=(const Values& z) { *this = {re * z.re - im * z.im, re * z.im + im * z.re}; }
+    void operator+=(const Values& z) { re += z.re, im += z.im; }
+  };
+  std::vector<Values> sums(count + 1);
+  const std::vector<Complex> factors = window_.factors(range);
+  for (std::size_t begin = 0; begin < kernels_.size(); begin += lanes) {
+    Values first, term, cycle, flat;
+    for (std::size_t j = begin; j < std::min(begin + lanes, kernels_.size()); ++j) {
+      const Kernel& k = kernels_[j];
+      first.set(j - begin, factors[j] * k.first);
+      term.set(j - begin, factors[j] * k.next);
+      cycle.set(j - begin, k.cycle);
+      flat.set(j - begin, factors[j] * k.flat);
+    }
+    sums[0] += first;
+    for (std::size_t n = 1; n < count; ++n, term *= cycle) sums[n] += term;
+    sums[count] += flat;
   }
-  return sums;
+  std::vector<Complex> found;
+  for (const Values& sum : sums) {
+    found.emplace_back(0.0);
+    for (std::size_t lane = 0; lane < lanes; ++lane)
+      found.back() += Complex(sum.re[lane], sum.im[lane]);
+  }
+  return found;
 }
 
 namespace {

@@ -49,8 +49,8 @@ class CycleWaves {
   [[nodiscard]] std::vector<std::complex<double>> terms(std::size_t count, double range) const;
 
  private:
-  /// Parts of g at one wavenumber: the first term, the next one, the factor from each term to the
-  /// next, and the flat waves.
+  /// Parts of g at one wavenumber, times WaterWindow::factor(): the first term, the next one, the
+  /// factor from each term to the next, and the flat waves.
   struct Kernel {
     std::complex<double> first, next, cycle, flat;
   };

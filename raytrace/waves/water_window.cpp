@@ -1,6 +1,7 @@
 #include "raytrace/waves/water_window.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/units.h"
@@ -36,9 +37,25 @@ double WaterWindow::weight(double s) const noexcept {
   return rise((s - begin) / low_width) * rise((end - s) / high_width);
 }
 
-std::complex<double> WaterWindow::factor(std::complex<double> xi, double range) const noexcept {
-  return 0.5 * spacing * std::sqrt(2.0 / (pi * range)) * weight(xi.real()) * std::sqrt(xi) *
-         std::exp(std::complex<double>(0.0, -1.0) * (xi * range - 0.25 * pi));
+std::complex<double> WaterWindow::factor(std::complex<double> xi) const noexcept {
+  return 0.5 * spacing * std::sqrt(2.0 / pi) * weight(xi.real()) * std::sqrt(xi);
+}
+
+/// e^{−i(ξr − π/4)}/√r. Steps are products, of no more than sixteen.
+std::vector<std::complex<double>> WaterWindow::factors(double range) const {
+  constexpr std::size_t products = 16;
+  const auto wave = [&](std::complex<double> xi) {
+    return std::exp(std::complex<double>(0.0, -1.0) * (xi * range - 0.25 * pi));
+  };
+  std::array<std::complex<double>, products> steps;
+  for (std::size_t i = 0; i < products; ++i)
+    steps[i] = std::polar(1.0 / std::sqrt(range), -double(i) * spacing * range);
+  std::vector<std::complex<double>> found(count);
+  for (std::size_t j = 0; j < count; j += products) {
+    const std::complex<double> here = wave(at(j));
+    for (std::size_t i = j; i < std::min(j + products, count); ++i) found[i] = here * steps[i - j];
+  }
+  return found;
 }
 
 double angle_of_spreading(const Environment& ocean, double frequency) {

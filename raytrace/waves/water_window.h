@@ -1,6 +1,7 @@
 #pragma once
 #include <complex>
 #include <cstddef>
+#include <vector>
 
 #include "raytrace/waves/wave_column.h"
 
@@ -19,8 +20,10 @@ struct WaterWindow {
   }
   /// From nothing to one and back. \param s  wavenumber [1/m]
   [[nodiscard]] double weight(double s) const noexcept;
-  /// What g(ξ) is multiplied with, so that the sum over the window is p(r). \param range  > 0 [m]
-  [[nodiscard]] std::complex<double> factor(std::complex<double> xi, double range) const noexcept;
+  /// Factor of g(ξ) at any range, and the factors of all wavenumbers at a range: the sum over the
+  /// window of g times both is p(r). \param range  > 0 [m]
+  [[nodiscard]] std::complex<double> factor(std::complex<double> xi) const noexcept;
+  [[nodiscard]] std::vector<std::complex<double>> factors(double range) const;
 };
 
 /// Angle at the fastest depth beyond which waves beside rays need not be looked for, neither where

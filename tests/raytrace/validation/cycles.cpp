@@ -7,6 +7,7 @@
 #include "raytrace/propagation.h"
 #include "raytrace/waves/caustics.h"
 #include "raytrace/waves/cycles.h"
+#include "raytrace/waves/water_window.h"
 #include "support/sum_of.h"
 
 namespace asdic::detail {
@@ -120,6 +121,25 @@ Off off(const Water& water, const Places& at) {
         std::norm(sum_of(found(solver, water, at, ranges[i], false), at.frequency) - truth[i]);
   }
   return {std::sqrt(sum.waves / all), std::sqrt(sum.rays / all)};
+}
+
+// Products of steps against the exponential of every wavenumber.
+TEST(Cycles, FactorsOfAWindowAreThoseOfEachWavenumber) {
+  const WaterWindow window{.spacing = 2e-3,
+                           .offset = 1e-4,
+                           .begin = 14.0,
+                           .end = 15.5,
+                           .low_width = 0.1,
+                           .high_width = 0.1,
+                           .count = 750};
+  constexpr double range = 4321.0;
+  const std::vector<Complex> factors = window.factors(range);
+  ASSERT_EQ(factors.size(), window.count);
+  for (std::size_t j = 0; j < window.count; ++j) {
+    const Complex expected =
+        std::exp(Complex(0.0, -1.0) * (window.at(j) * range - 0.25 * pi)) / std::sqrt(range);
+    EXPECT_NEAR(std::abs(factors[j] / expected - 1.0), 0.0, 1e-11) << j;
+  }
 }
 
 // The terms and the flat waves add up to the whole field, with both ends on one side of the axis or
