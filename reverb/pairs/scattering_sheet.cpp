@@ -176,7 +176,7 @@ std::size_t ScatteringSheet::law_of(const CellFacet* facet) const noexcept {
 }
 
 bool ScatteringSheet::azimuthally_symmetric() const noexcept {
-  return azimuthally_symmetric_pattern_ && back_->planes.size() == 1 &&
+  return depends_on_range_alone() &&
          (ends_.source.position - ends_.receiver.position).head<2>().norm() < 1e-3;
 }
 

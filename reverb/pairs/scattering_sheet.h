@@ -188,6 +188,10 @@ class ScatteringSheet {
     return (out_->planes.size() > 1 && !out_->mirrored) ||
            (back_->planes.size() > 1 && !back_->mirrored);
   }
+  /// Paths, and what is sent along them, are the same in all bearings from either end.
+  [[nodiscard]] bool depends_on_range_alone() const noexcept {
+    return azimuthally_symmetric_pattern_ && back_->planes.size() == 1;
+  }
   /// The same at every bearing around the grid's middle.
   [[nodiscard]] bool azimuthally_symmetric() const noexcept;
 

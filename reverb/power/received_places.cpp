@@ -1,5 +1,6 @@
 #include "reverb/power/received_places.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/doppler.h"
@@ -12,6 +13,20 @@ const PathPair* reciprocal(const PathPairs& pairs, const PathPair& pair) noexcep
   for (const PathPair& other : pairs.found)
     if (other.out == pair.back && other.back == pair.out && &other != &pair) return &other;
   return nullptr;
+}
+
+/// The same pair of paths to and from a place beside its own. The ground is the same there.
+PathPair beside(const ScatteringSheet& sheet, const PathPair& pair, const Vec2& own,
+                const Vec2& place) {
+  const Vec2 source = sheet.ends().source.position.head<2>();
+  const Vec2 receiver = (pair.receiver->position + pair.receiver->velocity * pair.delay).head<2>();
+  const Vec2 out = place - source, back = receiver - place;
+  PathPair found = pair;
+  found.leaving = out.normalized();
+  found.coming = back.normalized();
+  found.delay += pair.out->horizontal_slowness * (out.norm() - (own - source).norm()) +
+                 pair.back->horizontal_slowness * (back.norm() - (receiver - own).norm());
+  return found;
 }
 
 }  // namespace
@@ -28,11 +43,14 @@ void receive(const ScatteringField& field, const Ground& ground, const AudibleLi
                           .length = ground.length,
                           .width = ground.width,
                           .thickness = field.thickness};
+  const double area = ground.area / std::max(1.0, static_cast<double>(ground.places.size()));
+  const auto slowness = [&](const PathPair& pair) {
+    return met_by(pair.receiver->velocity, sheet.arriving(pair));
+  };
   PathPairs& pairs = memory.pairs;
   sheet.pairs_at(ground.middle, pairs, &limits, ground.ring, 0.0, ground.chance);
   memory.sounds.clear();
   memory.by.clear();
-  const std::size_t first = received.size();
   for (const PathPair& pair : pairs.found) {
     const PathPair* other = sheet.one_fan() ? reciprocal(pairs, pair) : nullptr;
     double rotation = 0.0;
@@ -43,13 +61,13 @@ void receive(const ScatteringField& field, const Ground& ground, const AudibleLi
       else if (pair.out_index > pair.back_index)
         continue;  // it goes with the other
     }
-    const double root = std::sqrt(ground.area * pair.area);
+    const double root = std::sqrt(area * pair.area);
     const double along = steepness(pair, ground.outward);
     const double through = pair.out_ends->down + pair.back_ends->down;
     Received h{.delay = pair.delay,
                .extent = std::abs(along) * ground.length + std::abs(through) * field.thickness,
                .one = root * pair.amplitude,
-               .one_slowness = met_by(pair.receiver->velocity, sheet.arriving(pair)),
+               .one_slowness = slowness(pair),
                .one_length = pair.back->length,
                .doppler = sheet.doppler(pair, drift, 0.0),
                .azimuthally_symmetric = azimuthally_symmetric};
@@ -57,30 +75,43 @@ void receive(const ScatteringField& field, const Ground& ground, const AudibleLi
     memory.sounds.add(sheet, pair, piece, h.doppler, h.one_slowness, part);
     if (other != nullptr) {
       h.other = root * other->amplitude * std::polar(1.0, -rotation);
-      h.other_slowness = met_by(other->receiver->velocity, sheet.arriving(*other));
+      h.other_slowness = slowness(*other);
       h.other_length = other->back->length;
       memory.sounds.add(sheet, *other, piece, h.doppler, h.other_slowness, part);
     }
-    received.push_back(h);
-    memory.by.push_back(&pair);
+    memory.by.push_back({&pair, other, h});
   }
   const std::span<const double> gains = memory.sounds.gains(interference, piece, memory.by.size());
-  for (std::size_t i = 0; i < gains.size(); ++i) {
-    received[first + i].one *= gains[i];
-    received[first + i].other *= gains[i];
-  }
-  if (motion.kind != ScattererMotion::Kind::bragg) return;
-  // By waves that come and by those that go: two lines.
-  for (std::size_t i = 0; i < memory.by.size(); ++i) {
-    Received goes = received[first + i];
-    const auto line = [&](Received& h, double bragg, double share) {
-      h.doppler = sheet.doppler(*memory.by[i], drift, bragg);
-      h.one *= std::sqrt(share);
-      h.other *= std::sqrt(share);
+  const auto add = [&](Received h, const PathPair& pair) {
+    if (motion.kind != ScattererMotion::Kind::bragg) {
+      received.push_back(h);
+      return;
+    }
+    // By waves that come and by those that go: two lines.
+    const auto line = [&](double bragg, double share) {
+      Received of = h;
+      of.doppler = sheet.doppler(pair, drift, bragg);
+      of.one *= std::sqrt(share);
+      of.other *= std::sqrt(share);
+      received.push_back(of);
     };
-    line(goes, -1.0, motion.receding_share);
-    line(received[first + i], 1.0, 1.0 - motion.receding_share);
-    if (motion.receding_share > 0.0) received.push_back(goes);
+    line(1.0, 1.0 - motion.receding_share);
+    if (motion.receding_share > 0.0) line(-1.0, motion.receding_share);
+  };
+  for (std::size_t i = 0; i < memory.by.size(); ++i) {
+    auto& [pair, other, h] = memory.by[i];
+    h.one *= gains[i];
+    h.other *= gains[i];
+    if (ground.places.empty()) add(h, *pair);
+    for (const Vec2& place : ground.places) {
+      const PathPair there = beside(sheet, *pair, ground.middle, place);
+      h.delay = there.delay;
+      h.one_slowness = slowness(there);
+      if (other != nullptr)
+        h.other_slowness = slowness(beside(sheet, *other, ground.middle, place));
+      h.doppler = sheet.doppler(there, drift, 0.0);
+      add(h, there);
+    }
   }
 }
 

@@ -2,6 +2,7 @@
 #include <complex>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "reverb/fields/scattering_field.h"
@@ -29,19 +30,30 @@ struct Ground {
   double length = 1.0, width = 0.0, area = 1.0;  ///< [m], [m], [m²]
   double ring = 1.0;         ///< area of all that is received at its range: what is inaudible [m²]
   std::uint64_t chance = 0;  ///< which path stands for each bundle
+  /// On it, of equal areas, each received by itself; none: all as one.
+  std::span<const Vec2> places = {};
 };
 
 /// Memory that receiving a place takes: used again from place to place.
 struct ReceptionMemory {
+  /// A pair of paths by which a place is received, and what is received by it.
+  struct By {
+    const PathPair* pair;
+    const PathPair* other;  // its reciprocal, if both are received as one
+    Received received;
+  };
   PathPairs pairs;
   PlaceSounds sounds;
-  std::vector<const PathPair*> by;  // by which each is received
+  std::vector<By> by;
 };
 
 /// Adds what a piece of ground sends back. Sounds that come by several paths interfere, as under a
 /// source close to the surface (Lloyd's mirror): the mean over the piece, the array and the pulse
-/// is put into their powers. docs/theory/reverberation.md, "Covariance" \param
-/// azimuthally_symmetric  it is a whole circle
+/// is put into their powers. docs/theory/reverberation.md, "Covariance"
+///
+/// Places on a piece share its pairs and their amplitudes. Each has its own directions and Doppler
+/// factors, and the delays change from place to place by the slownesses along the ground.
+/// \param azimuthally_symmetric  it is a whole circle
 void receive(const ScatteringField& field, const Ground& ground, const AudibleLimits& limits,
              const PathInterference& interference, bool azimuthally_symmetric,
              ReceptionMemory& memory, std::vector<Received>& received);

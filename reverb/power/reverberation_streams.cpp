@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 
@@ -120,22 +121,34 @@ class Resolution {
 };
 
 /// A cell of a block: directions of one sound, or of two that are one noise, and Doppler factors.
-struct Cell {
-  std::uint32_t block = 0;
-  Directions one{}, other{};
-  std::int16_t bend = 0, doppler = 0;
-  bool two = false;
+class Cell {
+ public:
+  Cell() = default;
+  /// \param other  of the second sound, if there are two
+  Cell(const Directions& one, const std::optional<Directions>& other, std::int16_t bend,
+       std::int16_t doppler) noexcept
+      : one_(word(one, doppler)), other_(word(other.value_or(Directions{}), bend)), two_(other) {}
 
+  [[nodiscard]] Cell in_block(std::uint32_t block) const noexcept {
+    Cell cell = *this;
+    cell.block_ = block;
+    return cell;
+  }
+  [[nodiscard]] std::uint32_t block() const noexcept { return block_; }
   [[nodiscard]] bool operator==(const Cell&) const = default;
   [[nodiscard]] std::uint64_t entity() const noexcept {
-    const auto word = [](const Directions& of, std::int16_t more) {
-      std::uint64_t w = static_cast<std::uint16_t>(more);
-      for (const std::int16_t i : of) w = w << 16 | static_cast<std::uint16_t>(i);
-      return w;
-    };
-    return mixed(mixed(word(one, doppler), word(other, bend)),
-                 std::uint64_t{block} << 1 | (two ? 1 : 0));
+    return mixed(mixed(one_, other_), std::uint64_t{block_} << 1 | (two_ ? 1 : 0));
   }
+
+ private:
+  static std::uint64_t word(const Directions& of, std::int16_t more) noexcept {
+    std::uint64_t w = static_cast<std::uint16_t>(more);
+    for (const std::int16_t i : of) w = w << 16 | static_cast<std::uint16_t>(i);
+    return w;
+  }
+  std::uint64_t one_ = 0, other_ = 0;
+  std::uint32_t block_ = 0;
+  bool two_ = false;
 };
 
 struct CellHash {
@@ -206,7 +219,7 @@ class CellSums {
     return sums_[place->second];
   }
   [[nodiscard]] std::size_t bins(const Cell& cell) const noexcept {
-    return blocks_[cell.block].end - blocks_[cell.block].begin;
+    return blocks_[cell.block()].end - blocks_[cell.block()].begin;
   }
   [[nodiscard]] std::span<float> power(const CellSum& sum) {
     return std::span(power_).subspan(sum.first, bins(sum.cell));
@@ -233,8 +246,9 @@ class CellSums {
   std::vector<float> power_;
 };
 
-/// The ground around a receiver, cut into circles half a bin of two-way delay apart and, further
-/// out, a 256th of their radius, and those into sectors; near a source that is elsewhere, finer.
+/// The ground around a receiver, cut into circles half a bin of two-way delay apart, but no more
+/// than a quarter of their distance from it or, further out, a 256th of their radius, and those
+/// into sectors; near a source that is elsewhere, finer.
 struct GroundAround {
   const ScatteringField& field;
   Vec2 middle;
@@ -247,9 +261,11 @@ struct GroundAround {
     const double reach =
         field.grid.rings * field.grid.spacing + (middle - field.grid.anchor).norm();
     const double height = std::abs(field.depth - ends.receiver.position.z());
-    const double least = std::clamp(0.25 * slowest_sea * bin, 1.0, std::max(1.0, 0.25 * height));
-    while (edges.back() < reach)
-      edges.push_back(std::min(reach, edges.back() + std::max(least, edges.back() / 256.0)));
+    while (edges.back() < reach) {
+      const double inner = edges.back(), most = 0.25 * std::hypot(height, inner);
+      const double width = std::clamp(0.25 * slowest_sea * bin, 1.0, std::max(1.0, most));
+      edges.push_back(std::min(reach, inner + std::max(width, inner / 256.0)));
+    }
     sectors = static_cast<int>(std::ceil(std::max<double>(bearings, field.bearings)));
   }
 
@@ -257,41 +273,65 @@ struct GroundAround {
   void receive(std::size_t circle, const AudibleLimits& limits,
                const PathInterference& interference, ReceptionMemory& memory,
                std::vector<Received>& received) const {
-    const double inner = edges[circle], outer = edges[circle + 1];
-    const double ring =
-        field.received_area(static_cast<std::uint32_t>(0.5 * (inner + outer) / field.grid.spacing));
-    const SheetEnds& ends = field.sheet.ends();
-    for (int sector = 0; sector < sectors; ++sector) {
-      const double width = 2.0 * pi / sectors;
-      const double bearing = field.grid.first_bearing + (sector + 0.5) * width;
-      const double range = 0.5 * (inner + outer);
-      const Vec2 outward(std::sin(bearing), std::cos(bearing));
-      const Vec2 place = middle + range * outward;
-      const double from_source = std::hypot((place - ends.source.position.head<2>()).norm(),
-                                            ends.source.position.z() - field.depth);
+    const double inner = edges[circle], outer = edges[circle + 1], range = 0.5 * (inner + outer);
+    const double ring = field.received_area(static_cast<std::uint32_t>(range / field.grid.spacing));
+    const double width = 2.0 * pi / sectors;
+    const int pieces = (sectors + together(range) - 1) / together(range);
+    std::vector<Vec2> places;
+    for (int piece = 0; piece < pieces; ++piece) {
+      const int first = piece * sectors / pieces, last = (piece + 1) * sectors / pieces;
+      const double bearing = field.grid.first_bearing + 0.5 * (first + last) * width;
+      const double from_source = distance_from_source(middle + range * outward(bearing));
       // No piece is longer than half its distance from the source.
       constexpr double most = 16.0;
-      const int around =
-          static_cast<int>(std::clamp(std::ceil(2.0 * range * width / from_source), 1.0, most));
+      const int around = last - first > 1
+                             ? 1
+                             : static_cast<int>(std::clamp(
+                                   std::ceil(2.0 * range * width / from_source), 1.0, most));
       const int along =
           static_cast<int>(std::clamp(std::ceil(2.0 * (outer - inner) / from_source), 1.0, most));
       for (int i = 0; i < along; ++i)
         for (int j = 0; j < around; ++j) {
           const double length = (outer - inner) / along, r = inner + (i + 0.5) * length;
           const double towards = bearing + ((j + 0.5) / around - 0.5) * width;
-          const Vec2 out(std::sin(towards), std::cos(towards));
-          const auto piece = static_cast<std::uint64_t>((sector * along + i) * around + j);
+          const double wide = r * width * (last - first) / around;
+          places.clear();
+          for (int sector = first; sector < last && last - first > 1; ++sector)
+            places.push_back(middle +
+                             r * outward(field.grid.first_bearing + (sector + 0.5) * width));
+          const auto number = static_cast<std::uint64_t>((piece * along + i) * around + j);
           asdic::detail::receive(field,
-                                 {.middle = middle + r * out,
-                                  .outward = out,
+                                 {.middle = middle + r * outward(towards),
+                                  .outward = outward(towards),
                                   .length = length,
-                                  .width = r * width / around,
-                                  .area = field.share * field.share * r * length * width / around,
+                                  .width = wide,
+                                  .area = field.share * field.share * length * wide,
                                   .ring = ring,
-                                  .chance = mixed(mixed(circle, field.boundary), piece)},
+                                  .chance = mixed(mixed(circle, field.boundary), number),
+                                  .places = places},
                                  limits, interference, false, memory, received);
         }
     }
+  }
+
+ private:
+  /// How many sectors of a circle are received by the same pairs of paths: as far as distances from
+  /// the source and interference of paths change little from one to the other.
+  [[nodiscard]] int together(double range) const noexcept {
+    constexpr double most = 6.0;
+    constexpr double narrow = 0.125;  // over the distance from the source
+    if (!field.sheet.depends_on_range_alone()) return 1;
+    const SheetEnds& ends = field.sheet.ends();
+    const double apart = (ends.source.position.head<2>() - middle).norm();
+    const double nearest = std::hypot(range - apart, ends.source.position.z() - field.depth);
+    return static_cast<int>(std::clamp(narrow * nearest * sectors / (2.0 * pi * range), 1.0, most));
+  }
+  [[nodiscard]] double distance_from_source(const Vec2& place) const noexcept {
+    const Vec3& source = field.sheet.ends().source.position;
+    return std::hypot((place - source.head<2>()).norm(), source.z() - field.depth);
+  }
+  [[nodiscard]] static Vec2 outward(double bearing) noexcept {
+    return {std::sin(bearing), std::cos(bearing)};
   }
 };
 
@@ -317,21 +357,19 @@ class Gatherer {
                        .other_slowness = std::norm(h.other) * h.other_slowness,
                        .one_curvature = std::norm(h.one) / h.one_length,
                        .other_curvature = std::norm(h.other) / h.other_length};
-    Cell cell{.one = cells_of(part.direction),
-              .bend = resolution_.bend(h.one_slowness, h.one_length),
-              .doppler = cell_of(part.shift),
-              .two = h.other != 0.0};
-    if (cell.two) cell.other = cells_of(resolution_.direction(h.other_slowness));
+    std::optional<Directions> other;
+    if (h.other != 0.0) other = cells_of(resolution_.direction(h.other_slowness));
+    const Cell cell(cells_of(part.direction), other, resolution_.bend(h.one_slowness, h.one_length),
+                    cell_of(part.shift));
     const double whole = std::max(last - first, 1e-9);
     do {
       const auto at = std::min(static_cast<std::size_t>(first), block_of_.size() - 1);
-      cell.block = block_of_[at];
-      const StreamBlock& block = blocks_[cell.block];
+      const StreamBlock& block = blocks_[block_of_[at]];
       const double until = std::min(last, static_cast<double>(block.end));
       const double share = last > first ? (until - first) / whole : 1.0;
       PartSum here = part;
       here.scale(share);
-      CellSum& sum = sums.at(cell);
+      CellSum& sum = sums.at(cell.in_block(block_of_[at]));
       sum.add(here);
       spread(here.power(), first - static_cast<double>(block.begin),
              until - static_cast<double>(block.begin), sums.power(sum));
@@ -489,7 +527,7 @@ ReverberationStreams::ReverberationStreams(std::span<const ScatteringField* cons
   constexpr double left_out = 1e-5;
   std::vector<std::vector<std::size_t>> of_block(blocks.size());
   for (std::size_t i = 0; i < sums.all().size(); ++i)
-    of_block[sums.all()[i].cell.block].push_back(i);
+    of_block[sums.all()[i].cell.block()].push_back(i);
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     const auto power = [&](std::size_t i) { return sums.all()[i].power(); };
     std::vector<std::size_t>& cells = of_block[b];
