@@ -93,6 +93,32 @@ std::vector<std::complex<double>> SampledResponse::at(double frequency) const {
   return sums;
 }
 
+/// By the coefficients of its Chebyshev polynomials.
+std::size_t SampledResponse::degree() const {
+  const std::size_t cells = values.size() - 1, responses = values.front().size();
+  double greatest = 0.0;
+  for (const auto& at_node : values) {
+    double energy = 0.0;
+    for (const std::complex<double>& value : at_node) energy += std::norm(value);
+    greatest = std::max(greatest, energy);
+  }
+  const ResponseError tolerated;
+  const double most = 0.5 * (cells < 32 ? tolerated.few : tolerated.many);
+  double left_out = 0.0;
+  for (std::size_t j = cells; j > 0; --j) {
+    std::vector<std::complex<double>> coefficient(responses);
+    for (std::size_t k = 0; k <= cells; ++k) {
+      const double ends = (k == 0 || k == cells ? 0.5 : 1.0) * (j == cells ? 1.0 : 2.0),
+                   share = ends / static_cast<double>(cells) *
+                           std::cos(pi * static_cast<double>(j * k) / static_cast<double>(cells));
+      for (std::size_t i = 0; i < responses; ++i) coefficient[i] += share * values[k][i];
+    }
+    for (const std::complex<double>& c : coefficient) left_out += std::norm(c);
+    if (left_out > most * most * greatest) return j;
+  }
+  return 0;
+}
+
 SampledResponse sampled_response(
     double centre, double half_width, const ResponseError& error, std::size_t most,
     const std::function<std::vector<std::complex<double>>(double)>& responses) {

@@ -31,6 +31,8 @@ struct SampledResponse {
                        ///< largest value; both are root sums of squares over the responses
 
   [[nodiscard]] std::vector<std::complex<double>> at(double frequency) const;
+  /// Degree of a polynomial that is as good: it leaves out half of what ResponseError tolerates.
+  [[nodiscard]] std::size_t degree() const;
 };
 
 /// Samples responses at Chebyshev–Lobatto points, and doubles their number until they predict four

@@ -103,8 +103,9 @@ class WideBand {
       std::size_t sum = 0;
       for (std::size_t i = 0; i < path.legs.size(); ++i)
         if (const SampledResponse* leg = legs_.of(path.legs[i])) {
-          sum += leg->values.size() - 1;
-          degrees_[i] = std::max(degrees_[i], leg->values.size() - 1);
+          const std::size_t own = leg->degree();
+          sum += own;
+          degrees_[i] = std::max(degrees_[i], own);
         }
       degree = std::max(degree, sum);
     }
@@ -128,11 +129,15 @@ class WideBand {
   [[nodiscard]] double longest_delay() const {
     return pattern_at(context_, projector_, centre_).longest_delay();
   }
-  /// Nodes for absorption and a pattern, and as many more as the degree of the legs.
+  /// Nodes for absorption and a pattern, and as many more as the degree of the legs: of a row of
+  /// numbers, so that the next ping asks for waves at the same frequencies.
   [[nodiscard]] BandNodes nodes_for(double nepers, double delay, std::size_t degree) const {
+    constexpr std::size_t step = 8;
     const BandNodes nodes = band_nodes(centre_, half_width_, nepers, delay);
-    return degree == 0 ? nodes
-                       : chebyshev_nodes(centre_, half_width_, nodes.frequencies.size() + degree);
+    if (degree == 0) return nodes;
+    const std::size_t least = nodes.frequencies.size() + degree;
+    return chebyshev_nodes(centre_, half_width_,
+                           least <= step ? least : (least + step - 1) / step * step);
   }
   [[nodiscard]] BandPart part(const BandNodes& nodes, std::size_t k) const {
     BandPart part = band_part(context_, projector_, std::max(1.0, nodes.frequencies[k]));

@@ -150,11 +150,16 @@ class MovingLeg {
     const double speed = (to.velocity - from.velocity).norm(),
                  length = std::max(1.0, (to.position - from.position).norm()),
                  c = context_.paths.speed_at(from.position);
-    // A segment's delays are off by an eighth of the curvature, where two of them are as loud.
+    // A segment's delays are off by an eighth of the curvature, where two of them are as loud. Its
+    // directions are off by as much as the next one's the other way: there the phases' mean is
+    // right, and in between it is off by |t/T − sin²(πt/2T)| of their difference at most.
+    const auto off = [&](double duration) {
+      const double bent = curvature_phase(frequency, duration, speed, length, c, 0.0),
+                   turned = curvature_phase(frequency, duration, speed, length, c, aperture) - bent;
+      return 0.25 * bent + 0.105 * turned + 0.125 * turned * turned;
+    };
     double longest = end - begin;
-    while (longest > 1e-3 &&
-           0.25 * curvature_phase(frequency, longest, speed, length, c, aperture) > tangent_phase)
-      longest *= 0.8;
+    while (longest > 1e-3 && off(longest) > tangent_phase) longest *= 0.8;
     return longest;
   }
 
@@ -476,15 +481,35 @@ Baseband two_step_echo(const EchoContext& context, const ManyEchoes& many,
   return TwoSteps(context, many, receivers, recording, max_doppler, band).receive();
 }
 
-double two_step_peak(const EchoContext& context, const ManyEchoes& many, const Recording& recording,
-                     double max_doppler, const TwoStepBand& band) {
-  const std::vector<Vec3> one = {Vec3::Zero()};
-  const bool phone = context.scenario().propagation.exact_per_phone;
-  std::vector<Vec3> received_at = one;
-  if (phone) received_at[0] = context.geometry.phones(context.array).front();
-  const Baseband received =
-      two_step_echo(context, many, {received_at, phone}, recording, max_doppler, band);
-  return received.channels > 0 ? largest_envelope(received, 0) : 0.0;
+TwoStepSound two_step_sound(const EchoContext& context, const ManyEchoes& many,
+                            const Recording& recording, double max_doppler,
+                            const TwoStepBand& band) {
+  const std::vector<Vec3>& phones = context.geometry.phones(context.array);
+  const bool own_peak = context.scenario().propagation.exact_per_phone;
+  const auto received_at = [&](std::vector<Vec3> places, bool by_themselves) {
+    return two_step_echo(context, many, {places, by_themselves}, recording, max_doppler, band);
+  };
+  const auto peak_of = [](const Baseband& sound, std::size_t channel) {
+    return sound.channels > 0 ? largest_envelope(sound, channel) : 0.0;
+  };
+  if (!context.listens || many.at_phones != own_peak) {
+    TwoStepSound found;
+    found.peak = peak_of(
+        own_peak ? received_at({phones.front()}, true) : received_at({Vec3::Zero()}, false), 0);
+    if (context.listens) found.received = received_at(phones, many.at_phones);
+    return found;
+  }
+  // The reference point is one phone more.
+  std::vector<Vec3> places = phones;
+  if (!own_peak) places.emplace_back(Vec3::Zero());
+  TwoStepSound found{.received = received_at(places, many.at_phones)};
+  Baseband& all = found.received;
+  found.peak = peak_of(all, own_peak ? 0 : phones.size());
+  if (all.channels > 0) {
+    all.channels = phones.size();
+    all.values.resize(all.channels * all.samples);
+  }
+  return found;
 }
 
 }  // namespace asdic::detail

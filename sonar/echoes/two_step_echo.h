@@ -29,10 +29,15 @@ struct TwoStepReceivers {
                                      const TwoStepReceivers& receivers, const Recording& recording,
                                      double max_doppler, const TwoStepBand& band = {});
 
-/// The largest envelope at the array's reference point (at its first phone, where every phone has
-/// paths of its own by the scenario's wish), over the pulse's peak at 1 m.
-[[nodiscard]] double two_step_peak(const EchoContext& context, const ManyEchoes& many,
-                                   const Recording& recording, double max_doppler,
-                                   const TwoStepBand& band = {});
+/// The same at the phones that the context asks for, and its largest envelope.
+struct TwoStepSound {
+  Baseband received;  ///< without channels if no phones are asked for
+  /// At the array's reference point (at its first phone, where every phone has paths of its own by
+  /// the scenario's wish), over the pulse's peak at 1 m.
+  double peak = 0.0;
+};
+[[nodiscard]] TwoStepSound two_step_sound(const EchoContext& context, const ManyEchoes& many,
+                                          const Recording& recording, double max_doppler,
+                                          const TwoStepBand& band = {});
 
 }  // namespace asdic::detail

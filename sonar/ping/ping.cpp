@@ -58,12 +58,11 @@ double end_of(const Recording& recording) {
   return recording.start + static_cast<double>(recording.samples) / recording.sample_rate;
 }
 
-/// Of echoes by many paths: a sound as long as the record at the target, and what is received of
-/// it, in a period of three records, before and after the transform.
-MemoryNeed two_step_need(const ManyEchoes& many, const Baseband& received) {
+/// Memory of echoes by many paths: a sound at the target, and what is received of it, in a period
+/// of three records, before and after the transform.
+MemoryNeed two_step_need(const Baseband& received) {
   return {.where = "pings.recording_duration",
-          .what = "echoes by " + std::to_string(many.pairs) + " pairs of paths on " +
-                  std::to_string(received.channels) + " phones",
+          .what = "echoes by very many paths on " + std::to_string(received.channels) + " phones",
           .bytes = 6.0 * static_cast<double>(received.values.size() + 4 * received.samples) *
                    sizeof(std::complex<float>),
           .remedy =
@@ -160,10 +159,11 @@ static Recording around(const ManyEchoes& many, const EchoContext& context, cons
 }
 
 /// Echoes, source → target × target → array, and the ping itself on its way to the array.
-std::vector<EchoPath> PingSimulator::sparse_returns(const EchoContext& context,
-                                                    const Emission& emission,
-                                                    PingRecord& record) const {
-  std::vector<EchoPath> received;
+PingSimulator::SparseReturns PingSimulator::sparse_returns(const EchoContext& context,
+                                                           const Emission& emission,
+                                                           PingRecord& record) const {
+  SparseReturns returns;
+  std::vector<EchoPath>& received = returns.paths;
   for (std::size_t i = 0; i < scenario_.targets.size(); ++i) {
     const Target& target = scenario_.targets[i];
     if (record.ping < target.first_ping || record.ping > target.last_ping) continue;
@@ -171,10 +171,12 @@ std::vector<EchoPath> PingSimulator::sparse_returns(const EchoContext& context,
     record.bounces.include(found.bounces);
     if (found.many) {
       const Recording part = around(*found.many, context, emission.pulse, record.recording);
-      if (part.samples > 0)
-        found.many->peak =
-            two_step_peak(context, *found.many, part, max_doppler_,
-                          band_of(context, emission, record, found.echoes, found.many->last));
+      if (part.samples > 0) {
+        const TwoStepBand band = band_of(context, emission, record, found.echoes, found.many->last);
+        TwoStepSound sound = two_step_sound(context, *found.many, part, max_doppler_, band);
+        found.many->peak = sound.peak;
+        if (sound.received.channels > 0) returns.many.push_back(std::move(sound.received));
+      }
       record.many_echoes.push_back(*found.many);
       record.echoes.insert(record.echoes.end(), found.echoes.begin(), found.echoes.end());
       found.echoes.clear();
@@ -195,7 +197,7 @@ std::vector<EchoPath> PingSimulator::sparse_returns(const EchoContext& context,
     for (Leg& leg : blast.legs) record.legs.push_back(std::move(leg));
     received.insert(received.end(), blast.received.begin(), blast.received.end());
   }
-  return received;
+  return returns;
 }
 
 /// When the first and the last of an echo is received, since the start of the ping [s].
@@ -264,26 +266,6 @@ double PingSimulator::peak_of(const Emission& emission, int array, std::span<con
                                            0));
   }
   return peak;
-}
-
-/// Of the targets whose pairs of paths are too many to be gridded one by one.
-void PingSimulator::add_many_echoes(const EchoContext& context, const Emission& emission,
-                                    std::span<const Vec3> phones, const PingRecord& record,
-                                    Baseband& received) const {
-  for (const ManyEchoes& many : record.many_echoes) {
-    if (many.array != context.array) continue;
-    std::vector<EchoPath> loudest;
-    std::copy_if(record.echoes.begin(), record.echoes.end(), std::back_inserter(loudest),
-                 [&](const EchoPath& echo) {
-                   return echo.target == many.target && echo.array == many.array;
-                 });
-    const TwoStepBand band = band_of(context, emission, record, loudest, many.last);
-    const Recording part = around(many, context, emission.pulse, record.recording);
-    if (part.samples == 0) continue;
-    const Baseband more =
-        two_step_echo(context, many, {phones, many.at_phones}, part, max_doppler_, band);
-    if (more.channels > 0) add_resampled(more, received);
-  }
 }
 
 PingSimulator::Emission PingSimulator::emit(const Transmission& sent, int ping) const {
@@ -429,11 +411,14 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
   PingRecord record = blank_record(geometry);
   MemoryBudget budget = budget_;
   budget.take(record_need(scenario_, most_samples()));
-  std::vector<SparseSound> sparse;  // [arrays]
+  std::vector<SparseSound> sparse;                // [arrays]
+  std::vector<std::vector<Baseband>> many_paths;  // [arrays][targets of very many paths]
   for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
     const EchoContext context = echo_context(emission, static_cast<int>(a), record);
-    sparse.push_back(
-        by_band(context, emission.projector, sparse_returns(context, emission, record)));
+    SparseReturns returns = sparse_returns(context, emission, record);
+    sparse.push_back(by_band(context, emission.projector, std::move(returns.paths)));
+    many_paths.push_back(std::move(returns.many));
+    for (const Baseband& sound : many_paths.back()) budget.take(two_step_need(sound));
   }
   const double longest = 2.0 * emission.pulse.duration() + 1.0;  // of what a return sounds [s]
   const auto unheard = [&](const EchoPath& echo) {
@@ -497,9 +482,8 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
     if (!sparse[a].wide.empty())
       of_array = wide_band_sound(context, emission.projector, sparse[a].wide, phones,
                                  record.recording, max_doppler_, std::move(of_array));
-    for (const ManyEchoes& many : record.many_echoes)
-      if (many.array == array) budget.take(two_step_need(many, of_array));
-    add_many_echoes(context, emission, phones, record, of_array);
+    for (const Baseband& sound : many_paths[a]) add_resampled(sound, of_array);
+    many_paths[a].clear();
     append_channels(received, std::move(of_array));
     record.timings.synthesis += watch.lap();
     step(0.25, "what the sea sends back");

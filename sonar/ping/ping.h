@@ -149,9 +149,15 @@ class PingSimulator {
     const Pulse& pulse;
     BeamPattern pattern;
   };
-  /// Returns the echoes and direct blasts, and puts them into the record with their legs.
-  std::vector<EchoPath> sparse_returns(const EchoContext& context, const Emission& emission,
-                                       PingRecord& record) const;
+  /// Echoes and direct blasts: those that are received path by path, and sounds of all phones, of
+  /// targets with very many paths.
+  struct SparseReturns {
+    std::vector<EchoPath> paths;
+    std::vector<Baseband> many;
+  };
+  /// Puts them into the record, too, with their legs.
+  SparseReturns sparse_returns(const EchoContext& context, const Emission& emission,
+                               PingRecord& record) const;
   /// Largest envelope of a target's echoes as they add (SummaryParts::peak).
   [[nodiscard]] double peak_of(const Emission& emission, int array,
                                std::span<const EchoPath> echoes, PingRecord& record) const;
@@ -162,9 +168,6 @@ class PingSimulator {
   [[nodiscard]] TwoStepBand band_of(const EchoContext& context, const Emission& emission,
                                     const PingRecord& record, std::span<const EchoPath> loudest,
                                     double last) const;
-  void add_many_echoes(const EchoContext& context, const Emission& emission,
-                       std::span<const Vec3> phones, const PingRecord& record,
-                       Baseband& received) const;
   [[nodiscard]] EchoContext echo_context(const Emission& emission, int array,
                                          PingRecord& record) const;
   [[nodiscard]] ReverberationContext reverberation_context(const Emission& emission, int array,

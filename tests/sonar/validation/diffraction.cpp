@@ -2,7 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "raytrace/propagation.h"
 #include "raytrace/waves/diffraction.h"
@@ -191,6 +193,22 @@ TEST(Diffraction, AResponseIsSampledAsOftenAsItTurns) {
   EXPECT_NEAR(std::abs(slow.at(437.0)[0] - (1.0 + std::polar(0.5, 2.0 * pi * 0.874))), 0.0, 1e-3);
   EXPECT_EQ(fast.values.size(), 33U);
   EXPECT_GT(fast.error, 0.03);
+}
+
+// What Chebyshev polynomials of no less than the degree hold is all but half of what is tolerated.
+TEST(Diffraction, AResponseHasTheDegreeOfItsPolynomial) {
+  const auto degree_of = [](const std::function<std::complex<double>(double)>& response) {
+    return sampled_response(500.0, 100.0, {}, 65,
+                            [&](double f) { return std::vector{response((f - 500.0) / 100.0)}; })
+        .degree();
+  };
+  EXPECT_EQ(degree_of([](double) { return 2.0; }), 0U);
+  EXPECT_EQ(degree_of([](double x) { return 1.0 + 0.5 * x; }), 1U);
+  EXPECT_EQ(degree_of([](double x) { return 4.0 * x * x * x - 3.0 * x; }), 3U);
+  // T₄ of 1e-3 beside 1 is below 2e-3, of 4e-3 it is not.
+  const auto fourth = [](double x) { return std::cos(4.0 * std::acos(std::clamp(x, -1.0, 1.0))); };
+  EXPECT_EQ(degree_of([&](double x) { return 1.0 + 1e-3 * fourth(x); }), 0U);
+  EXPECT_EQ(degree_of([&](double x) { return 1.0 + 4e-3 * fourth(x); }), 4U);
 }
 
 // An echo off a target at a caustic: no jump as it moves through it by centimetres, and none is
