@@ -7,6 +7,7 @@ namespace asdic::detail::tracing {
 namespace {
 
 constexpr int most_touches = 32;
+constexpr int most_turns = 20'000;  // along a kink of the profile
 
 }  // namespace
 
@@ -90,7 +91,9 @@ bool March::meets(BoundaryKind kind, double heading) const {
 /// Looks at where the ray is and deals with what happens on the spot; false when the ray has ended.
 bool March::begin_step() {
   for (;;) {
-    if (segments_ >= limits_.max_segments) return end(RayEnd::trapped);
+    if (segments_ >= limits_.max_segments ||
+        history_.upper_turns + history_.lower_turns >= most_turns)
+      return end(RayEnd::trapped);
     here_ = local(*cell_, y_);
     if (near_surface_) surface_facet_ = facet_ahead(BoundaryKind::surface);
     if (near_bottom_) bottom_facet_ = facet_ahead(BoundaryKind::bottom);
