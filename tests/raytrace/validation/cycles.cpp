@@ -123,7 +123,8 @@ Off off(const Water& water, const Places& at) {
   return {std::sqrt(sum.waves / all), std::sqrt(sum.rays / all)};
 }
 
-// Products of steps against the exponential of every wavenumber.
+// Products of steps against the exponential of every wavenumber. Phases of up to 7·10⁴ rad are
+// rounded to 7·10⁻¹² in either.
 TEST(Cycles, FactorsOfAWindowAreThoseOfEachWavenumber) {
   const WaterWindow window{.spacing = 2e-3,
                            .offset = 1e-4,
@@ -138,7 +139,7 @@ TEST(Cycles, FactorsOfAWindowAreThoseOfEachWavenumber) {
   for (std::size_t j = 0; j < window.count; ++j) {
     const Complex expected =
         std::exp(Complex(0.0, -1.0) * (window.at(j) * range - 0.25 * pi)) / std::sqrt(range);
-    EXPECT_NEAR(std::abs(factors[j] / expected - 1.0), 0.0, 1e-11) << j;
+    EXPECT_NEAR(std::abs(factors[j] / expected - 1.0), 0.0, 3e-11) << j;
   }
 }
 
