@@ -315,15 +315,16 @@ struct GroundAround {
   }
 
  private:
-  /// How many sectors of a circle are received by the same pairs of paths: as far as distances from
-  /// the source and interference of paths change little from one to the other.
+  /// Number of sectors of a circle that are received by the same pairs of paths: as many as keep
+  /// bearings from either end, distances from the source and interference of paths alike.
   [[nodiscard]] int together(double range) const noexcept {
     constexpr double most = 6.0;
     constexpr double narrow = 0.125;  // over the distance from the source
     if (!field.sheet.depends_on_range_alone()) return 1;
     const SheetEnds& ends = field.sheet.ends();
     const double apart = (ends.source.position.head<2>() - middle).norm();
-    const double nearest = std::hypot(range - apart, ends.source.position.z() - field.depth);
+    const double nearest =
+        std::min(range, std::hypot(range - apart, ends.source.position.z() - field.depth));
     return static_cast<int>(std::clamp(narrow * nearest * sectors / (2.0 * pi * range), 1.0, most));
   }
   [[nodiscard]] double distance_from_source(const Vec2& place) const noexcept {
