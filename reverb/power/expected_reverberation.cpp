@@ -147,7 +147,7 @@ struct Middles {
   }
 
  private:
-  /// For how many sectors one is looked at. Far from source and receiver, as far apart as they are,
+  /// Number of sectors that one stands for. Far from source and receiver, as far apart as they are,
   /// what is received changes with the bearing like its cosine, and the mean over twelve is exact.
   [[nodiscard]] std::uint32_t sectors_for_one(std::uint32_t ring) const noexcept {
     constexpr std::uint32_t enough = 12;

@@ -87,7 +87,7 @@ void receive(const ScatteringField& field, const Ground& ground, const AudibleLi
       received.push_back(h);
       return;
     }
-    // By waves that come and by those that go: two lines.
+    // Waves that come and waves that go make two lines.
     const auto line = [&](double bragg, double share) {
       Received of = h;
       of.doppler = sheet.doppler(pair, drift, bragg);

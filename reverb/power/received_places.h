@@ -30,7 +30,7 @@ struct Ground {
   double length = 1.0, width = 0.0, area = 1.0;  ///< [m], [m], [m²]
   double ring = 1.0;         ///< area of all that is received at its range: what is inaudible [m²]
   std::uint64_t chance = 0;  ///< which path stands for each bundle
-  /// On it, of equal areas, each received by itself; none: all as one.
+  /// Places on it, of equal areas, each received by itself; none: all as one.
   std::span<const Vec2> places = {};
 };
 

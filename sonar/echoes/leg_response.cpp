@@ -93,7 +93,7 @@ std::vector<std::complex<double>> SampledResponse::at(double frequency) const {
   return sums;
 }
 
-/// By the coefficients of its Chebyshev polynomials.
+/// Adds up the coefficients of its Chebyshev polynomials, the highest first.
 std::size_t SampledResponse::degree() const {
   const std::size_t cells = values.size() - 1, responses = values.front().size();
   double greatest = 0.0;

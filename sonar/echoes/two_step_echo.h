@@ -29,11 +29,11 @@ struct TwoStepReceivers {
                                      const TwoStepReceivers& receivers, const Recording& recording,
                                      double max_doppler, const TwoStepBand& band = {});
 
-/// The same at the phones that the context asks for, and its largest envelope.
+/// The same at the phones that the context asks for, with its peak.
 struct TwoStepSound {
   Baseband received;  ///< without channels if no phones are asked for
-  /// At the array's reference point (at its first phone, where every phone has paths of its own by
-  /// the scenario's wish), over the pulse's peak at 1 m.
+  /// Largest envelope at the array's reference point (at its first phone, where every phone has
+  /// paths of its own by the scenario's wish), over the pulse's peak at 1 m.
   double peak = 0.0;
 };
 [[nodiscard]] TwoStepSound two_step_sound(const EchoContext& context, const ManyEchoes& many,

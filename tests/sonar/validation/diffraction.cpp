@@ -195,7 +195,7 @@ TEST(Diffraction, AResponseIsSampledAsOftenAsItTurns) {
   EXPECT_GT(fast.error, 0.03);
 }
 
-// What Chebyshev polynomials of no less than the degree hold is all but half of what is tolerated.
+// Polynomials up to the degree leave out no more than half of what is tolerated.
 TEST(Diffraction, AResponseHasTheDegreeOfItsPolynomial) {
   const auto degree_of = [](const std::function<std::complex<double>(double)>& response) {
     return sampled_response(500.0, 100.0, {}, 65,
