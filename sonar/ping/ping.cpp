@@ -60,14 +60,14 @@ double end_of(const Recording& recording) {
 
 /// Memory of echoes by many paths: a sound at the target, and what is received of it, in a period
 /// of three records, before and after the transform.
-MemoryNeed two_step_need(const Baseband& received) {
-  return {.where = "pings.recording_duration",
-          .what = "echoes by very many paths on " + std::to_string(received.channels) + " phones",
-          .bytes = 6.0 * static_cast<double>(received.values.size() + 4 * received.samples) *
-                   sizeof(std::complex<float>),
-          .remedy =
-              "a shorter record, fewer phones or numbers in propagation.max_surface_bounces and "
-              "max_bottom_bounces"};
+MemoryNeed two_step_need(std::size_t channels, double samples) {
+  return {
+      .where = "pings.recording_duration",
+      .what = "echoes by very many paths on " + std::to_string(channels) + " phones",
+      .bytes = 6.0 * (static_cast<double>(channels) + 4.0) * samples * sizeof(std::complex<float>),
+      .remedy =
+          "a shorter record, fewer phones or numbers in propagation.max_surface_bounces and "
+          "max_bottom_bounces"};
 }
 
 /// Memory of the sum of echoes that are received across the band part by part.
@@ -172,6 +172,10 @@ PingSimulator::SparseReturns PingSimulator::sparse_returns(const EchoContext& co
     if (found.many) {
       const Recording part = around(*found.many, context, emission.pulse, record.recording);
       if (part.samples > 0) {
+        MemoryBudget left = budget_;  // what is received is counted once its length is known
+        const double rate = std::min(part.sample_rate, 4.0 * emission.pulse.bandwidth_40db());
+        left.take(two_step_need(context.listens ? context.geometry.phones(context.array).size() : 1,
+                                rate * static_cast<double>(part.samples) / part.sample_rate));
         const TwoStepBand band = band_of(context, emission, record, found.echoes, found.many->last);
         TwoStepSound sound = two_step_sound(context, *found.many, part, max_doppler_, band);
         found.many->peak = sound.peak;
@@ -207,17 +211,16 @@ static std::pair<double, double> received_between(const Pulse& pulse, const Echo
   return {received.delay, received.delay + pulse.duration() / received.doppler};
 }
 
-/// Times in which echoes are received, delayed by reflections, with nothing for as long as a pulse
-/// between them: first and last [s], in order.
+/// Times in which echoes are received, with the edges of the band and delayed by reflections, with
+/// nothing for as long as a pulse between them: first and last [s], in order.
 static std::vector<std::pair<double, double>> times_of(const Pulse& pulse,
                                                        std::span<const EchoPath> echoes) {
+  const double edge = 2.0 / response_half_band(pulse);
   std::vector<std::pair<double, double>> each, together;
-  double end = -infinity;
   for (const EchoPath& echo : echoes) {
-    each.push_back(received_between(pulse, echo));
-    end = std::max(end, each.back().second);
+    const auto [first, last] = received_between(pulse, echo);
+    each.emplace_back(first - edge, last + delay_of_response(pulse));
   }
-  for (auto& [first, last] : each) last = std::min(last + delay_of_response(pulse), end);
   std::sort(each.begin(), each.end());
   for (const auto& [first, last] : each) {
     if (together.empty() || first > together.back().second + pulse.duration())
@@ -418,7 +421,8 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
     SparseReturns returns = sparse_returns(context, emission, record);
     sparse.push_back(by_band(context, emission.projector, std::move(returns.paths)));
     many_paths.push_back(std::move(returns.many));
-    for (const Baseband& sound : many_paths.back()) budget.take(two_step_need(sound));
+    for (const Baseband& sound : many_paths.back())
+      budget.take(two_step_need(sound.channels, static_cast<double>(sound.samples)));
   }
   const double longest = 2.0 * emission.pulse.duration() + 1.0;  // of what a return sounds [s]
   const auto unheard = [&](const EchoPath& echo) {

@@ -169,11 +169,14 @@ def targets_add(s, p):
 
     "auto" follows as many bounces as each run needs, so numbers stand in its place. What rough boundaries scatter is drawn
     for each target by its number. A pulse has soft edges here: of one whose edges jump, what is let through depends on the
-    largest Doppler factor of all targets (theory/synthesis.md, "Band").
+    largest Doppler factor of all targets (theory/synthesis.md, "Band"). Pulses of pieces jump between these, so they are
+    held to the law at rest.
     """
     s = smooth(plain(s))
     if s["pulse"]["kind"] != "file":
         s["pulse"]["window"] = "hann"
+    if s["pulse"]["kind"] in ("costas", "ptfm", "pulse_train"):
+        s = still(s)
     s["propagation"]["direct_blast"] = False
     s["propagation"]["fathometer"] = False
     for key in ("max_surface_bounces", "max_bottom_bounces"):

@@ -19,7 +19,10 @@ def one_echo(s):
 
 @law
 def peak_is_in_the_samples(s, p):
-    """`echo_peak_db` is the greatest envelope over sqrt(2): 0.5 dB (the issue's bound)."""
+    """`echo_peak_db` is the greatest envelope over sqrt(2): 0.5 dB.
+
+    Synthesis errs by -90 dB of all paths together. Where these cancel by 60 dB and more, nothing is said.
+    """
     s = one_echo(s)
     record = ping(s)
     said = float(record.summary["echo_peak_db"][0, 0])
@@ -27,6 +30,8 @@ def peak_is_in_the_samples(s, p):
     if not math.isfinite(said) or most == 0.0:
         raise Silent("no echo")
     found = 20 * math.log10(most / math.sqrt(2) / 1e-6)
+    if found < 20 * math.log10(np.sum(10 ** (record.echoes["level_db"] / 20))) - 60:
+        raise Silent("paths cancel")
     expect(abs(said - found) <= 0.5, f"echo_peak_db {said:.2f} dB, samples {found:.2f} dB")
 
 
