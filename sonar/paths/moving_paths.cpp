@@ -90,27 +90,36 @@ Way MovingPaths::way_at(const Vec3& from, const Track& track, const Vec3& offset
   return way;
 }
 
+/// When sound that left along a straight line would be there: off by the changes of its speed.
+double MovingPaths::straight_arrival(const Vec3& from, double start, const Track& track,
+                                     const Vec3& offset) const {
+  const double c = paths_.speed_at(from);
+  double time = start;
+  for (int i = 0; i < 3; ++i)
+    time = start + (place(track, offset, time).position - from).norm() / c;
+  return time;
+}
+
 Way MovingPaths::way(const Vec3& from, double start, const Track& track, const Vec3& offset,
                      std::span<const Arrival> known) const {
-  const double guess = known.empty() ? start : start + known.front().delay;
+  const double guess =
+      known.empty() ? straight_arrival(from, start, track, offset) : start + known.front().delay;
   Way way = way_at(from, track, offset, guess, known);
   for (int i = 0; i < 4 && !way.leg.arrivals.empty(); ++i) {
-    // From paths that were known a moment before, the step is that of meet(): what it leaves is of
-    // second order. Of others each round gains a factor v/c.
     const Arrival& first = way.leg.arrivals.front();
-    const double time = known.empty()
-                            ? start + first.delay
-                            : arrival_time(way, start, first,
-                                           arriving_slowness(way.leg.bearing, first,
-                                                             paths_.speed_at(way.end.position)));
-    if (std::abs(time - way.reference_time) < 1e-9) break;
+    const double c = paths_.speed_at(way.end.position);
+    const double time =
+        arrival_time(way, start, first, arriving_slowness(way.leg.bearing, first, c));
     const Kinematics then = place(track, offset, time);
-    if (then.position == way.end.position) {
-      way.end = then;
-      way.reference_time = time;
+    const double moved = (then.position - way.end.position).norm();
+    if (settled(moved, c, std::max(way.leg.range, moved))) {
+      if (moved == 0.0) {
+        way.end = then;
+        way.reference_time = time;
+      }
       break;
     }
-    // The first step is the long one, all that the end does during a one-way travel time.
+    // The first step may be a long one.
     const Arrivals before = i == 0 && known.empty() ? Arrivals{} : std::move(way.leg.arrivals);
     way = way_at(from, track, offset, time, before);
   }

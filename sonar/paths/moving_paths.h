@@ -98,7 +98,8 @@ class MovingPaths {
         tolerance_(std::min(tolerance, 2e-3 / frequency)),
         reuse_(reuse) {}
 
-  /// Eigenrays from a point, left at `start`, to where a track is when the first of them comes.
+  /// Eigenrays from a point, left at `start`, to where a track is about when the first of them
+  /// comes: so near that meet() leaves no more than the tolerance.
   /// \param offset  from the track [m]   \param known  the same paths when something was metres
   /// away; none: they are searched for
   [[nodiscard]] Way way(const Vec3& from, double start, const Track& track, const Vec3& offset,
@@ -110,6 +111,8 @@ class MovingPaths {
                              const Way& reference, const Arrival& path) const;
 
  private:
+  [[nodiscard]] double straight_arrival(const Vec3& from, double start, const Track& track,
+                                        const Vec3& offset) const;
   [[nodiscard]] Way way_at(const Vec3& from, const Track& track, const Vec3& offset, double time,
                            std::span<const Arrival> known) const;
   [[nodiscard]] Kinematics place(const Track& track, const Vec3& offset, double time) const;
