@@ -245,7 +245,7 @@ void BranchTable::for_each_piece(double low, double high, std::span<const double
       last = std::max(last, most[i]);
     }
     for (const bool starts_up : {true, false}) {
-      for (int k = 0; k <= last; ++k) {
+      for (int k = limits_.min_vertices; k <= last; ++k) {
         const Branch branch{.starts_up = starts_up, .vertices = k};
         if (!interval.turns_above && branch.top_vertices() > limits_.max_surface_bounces) break;
         if (!interval.turns_below && branch.bottom_vertices() > limits_.max_bottom_bounces) break;

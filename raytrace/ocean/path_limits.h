@@ -11,6 +11,7 @@ struct PathLimits {
   double max_launch_angle = 1.5707963267948966;  ///< from the horizontal [rad]
   int max_vertices = 256;    ///< turning points and bounces together: at a kink of the profile ever
                              ///< smaller cycles have no end
+  int min_vertices = 0;      ///< fewest of them, of a search for some histories alone
   bool diffraction = false;  ///< and what waves do at caustics and where no ray comes (sonar's)
   double faintest = 0.0;     ///< product of reflection magnitudes below which a path is dropped
   /// Of a path to the ground: delay + home_slowness·range above which it is dropped, for with the

@@ -190,10 +190,10 @@ void add_to(ExactKey& key, const CausticsNeed& need) {
 
 void add_to(ExactKey& key, const PathLimits& limits) {
   // Every member by name: one more does not compile until it is here.
-  const auto& [surface_bounces, bottom_bounces, launch_angle, vertices, diffraction, faintest,
-               delay, home_slowness] = limits;
-  key.add_all(surface_bounces, bottom_bounces, launch_angle, vertices, diffraction, faintest, delay,
-              home_slowness);
+  const auto& [surface_bounces, bottom_bounces, launch_angle, vertices, fewest, diffraction,
+               faintest, delay, home_slowness] = limits;
+  key.add_all(surface_bounces, bottom_bounces, launch_angle, vertices, fewest, diffraction,
+              faintest, delay, home_slowness);
 }
 
 void add_to(ExactKey& key, const Plane& plane, bool area) {

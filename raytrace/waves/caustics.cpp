@@ -144,6 +144,8 @@ class FoldField {
     PathLimits of_fold = limits;  // other paths than its own are not asked for
     of_fold.max_surface_bounces = std::min(of_fold.max_surface_bounces, fold.surface_bounces);
     of_fold.max_bottom_bounces = std::min(of_fold.max_bottom_bounces, fold.bottom_bounces);
+    of_fold.max_vertices = std::min(of_fold.max_vertices, fold.vertices + 1);
+    of_fold.min_vertices = std::max(0, fold.vertices - 1);
     for (double share = 1.0; share > 0.2 && !known_; share *= 0.5) {
       std::array<double, sample_places.size()> ranges{};
       for (std::size_t j = 0; j < ranges.size(); ++j) {

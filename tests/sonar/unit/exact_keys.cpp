@@ -103,6 +103,7 @@ TEST(ExactKeys, TellApartLimitsOfPaths) {
                      changed([](PathLimits& l) { l.max_bottom_bounces = 7; }),
                      changed([](PathLimits& l) { l.max_launch_angle = 0.5; }),
                      changed([](PathLimits& l) { l.max_vertices = 7; }),
+                     changed([](PathLimits& l) { l.min_vertices = 2; }),
                      changed([](PathLimits& l) { l.diffraction = true; }),
                      changed([](PathLimits& l) { l.faintest = 0.5; }),
                      changed([](PathLimits& l) { l.max_delay = 0.5; }),
