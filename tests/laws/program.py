@@ -173,14 +173,16 @@ def at_one_rate(*records):
 
 
 def cost(scenario, command, *options):
-    """Processor time [s] and largest memory [bytes] of a command, and what it said."""
+    """Processor time [s] and largest memory [bytes] of a command, and what it said; Dear after three times SECONDS."""
     with Folder(scenario) as folder:
         with open(folder / "said", "w") as out:
-            child = subprocess.Popen([ASDIC, command, "s.toml", *options], cwd=folder, stdout=out,
-                                     stderr=subprocess.STDOUT)
+            child = subprocess.Popen(["prlimit", f"--cpu={3 * SECONDS}", "--", ASDIC, command, "s.toml", *options], cwd=folder,
+                                     stdout=out, stderr=subprocess.STDOUT)
             _, status, used = os.wait4(child.pid, 0)
             child.returncode = os.waitstatus_to_exitcode(status)
         said = (folder / "said").read_text()
+        if child.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
+            raise Dear(f"asdic {command}: not done after {3 * SECONDS} s of processor time")
         if child.returncode == 2:
             raise Refused(said.strip()[-400:])
         if child.returncode != 0:
