@@ -140,8 +140,8 @@ class FloorTracer {
             .kind = area_.seabed() ? area_.seabed()->at(x, y) : unmapped};
   }
 
-  /// Two millimetres, so that both ways of a plane meet one floor up to tens of kHz, and a slope that
-  /// turns a bounce by 0.02° at most.
+  /// Two millimetres, so that both ways of a plane meet one floor up to tens of kHz, and a slope
+  /// that turns a bounce by 0.02° at most.
   static bool fits(const Hermite& cubic, const FloorSample& sample) {
     return std::abs(cubic.value(sample.range) - sample.depth) <= 0.002 + 1e-6 * sample.depth &&
            std::abs(cubic.slope(sample.range) - sample.slope) <= 2e-4;
