@@ -140,11 +140,11 @@ class FloorTracer {
             .kind = area_.seabed() ? area_.seabed()->at(x, y) : unmapped};
   }
 
-  /// Two millimetres, so that both ways of a plane meet one floor up to tens of kHz, and a slope
-  /// that turns a bounce by 0.02° at most.
+  /// A few centimetres, and a slope that turns a bounce by 0.1° at most. More nodes would part rays
+  /// that meet the floor on either side of one: a tenth of what moving ends follow at 2 mm.
   static bool fits(const Hermite& cubic, const FloorSample& sample) {
-    return std::abs(cubic.value(sample.range) - sample.depth) <= 0.002 + 1e-6 * sample.depth &&
-           std::abs(cubic.slope(sample.range) - sample.slope) <= 2e-4;
+    return std::abs(cubic.value(sample.range) - sample.depth) <= 0.02 + 1e-5 * sample.depth &&
+           std::abs(cubic.slope(sample.range) - sample.slope) <= 1e-3;
   }
   static Hermite cubic(const FloorSample& a, const FloorSample& b) {
     return {{a.range, a.depth, a.slope}, {b.range, b.depth, b.slope}};

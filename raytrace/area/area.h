@@ -49,7 +49,7 @@ class Area {
 
   /// The vertical plane from a place along a bearing [rad], to `reach` m and a little behind: nodes
   /// of the floor where the map needs them, as Hermite cubics that leave a bicubic map by a few
-  /// millimetres and a faceted one not at all; profiles at the spacing of the water's grid. Land is
+  /// centimetres and a faceted one not at all; profiles at the spacing of the water's grid. Land is
   /// a film of water of 0.1 m over a floor that reflects nothing, so that sound that runs up a
   /// coast ends there.
   [[nodiscard]] Environment section(const Vec2& place, double bearing, double reach) const;
