@@ -112,7 +112,10 @@ Way MovingPaths::way(const Vec3& from, double start, const Track& track, const V
         arrival_time(way, start, first, arriving_slowness(way.leg.bearing, first, c));
     const Kinematics then = place(track, offset, time);
     const double moved = (then.position - way.end.position).norm();
-    if (settled(moved, c, std::max(way.leg.range, moved))) {
+    // Beyond a turn neither the linear step nor the Doppler factor is that of the course before.
+    constexpr double same_course = 1e-6;  // [m/s]
+    if (settled(moved, c, std::max(way.leg.range, moved)) &&
+        (moved == 0.0 || (then.velocity - way.end.velocity).norm() < same_course)) {
       if (moved == 0.0) {
         way.end = then;
         way.reference_time = time;

@@ -292,7 +292,10 @@ def table(counts):
 
 def day_of_commit():
     """The day of the last commit as a number, so that the same sources have the same draws: 20261130; 1 outside of git."""
-    said = subprocess.run(["git", "log", "-1", "--format=%cd", "--date=format:%Y%m%d"], cwd=HERE, capture_output=True, text=True)
+    try:
+        said = subprocess.run(["git", "log", "-1", "--format=%cd", "--date=format:%Y%m%d"], cwd=HERE, capture_output=True, text=True)
+    except OSError:  # no git on this machine
+        return 1
     return int(said.stdout) if said.returncode == 0 and said.stdout.strip() else 1
 
 
