@@ -141,5 +141,37 @@ TEST(FollowedPaths, HaveTheAmplitudesThatAreFoundAtTheirPlace) {
   }
 }
 
+// A target turns back just after the direct path has reached it, at a time at which straight sound
+// of the source's speed would still be on its way. In water of one gradient g the delay between two
+// places d apart is acosh(1 + g²d²/(2c₁c₂))/g.
+TEST(MovingPaths, AreMetBeforeATurnThatStraightSoundWouldMiss) {
+  constexpr double g = 0.1, top = 1500.0, depth = 400.0, frequency = 1000.0;
+  Environment ocean;
+  const std::array<double, 2> at = {0.0, 500.0}, speed = {top, top + 500.0 * g};
+  ocean.water = SoundSpeedProfile::table(at, speed, Interpolation::c_linear);
+  ocean.bottom = {.depth = 500.0, .material = FluidHalfSpace{}};
+  const PropagationPaths paths(ocean, {});
+  const Vec3 from(0.0, 0.0, 10.0), begin(2000.0, 0.0, depth), velocity(10.0, 0.0, 0.0);
+  const auto delay = [&](const Vec3& to) {
+    return std::acosh(1.0 + g * g * (to - from).squaredNorm() /
+                                (2.0 * (top + g * from.z()) * (top + g * to.z()))) /
+           g;
+  };
+  double time = 0.0;
+  for (int i = 0; i < 20; ++i) time = delay(begin + time * velocity);
+  const double turn = time + 1e-3;
+  Track track;
+  track.waypoints = {{.time = 0.0, .position = begin},
+                     {.time = turn, .position = begin + turn * velocity},
+                     {.time = turn + 100.0, .position = begin + (turn - 100.0) * velocity}};
+  const MovingPaths moving(paths, {.max_surface_bounces = 0, .max_bottom_bounces = 0}, frequency,
+                           0.0);
+  const Way way = moving.way(from, 0.0, track, Vec3::Zero());
+  ASSERT_EQ(way.leg.arrivals.size(), 1U);
+  const MetPath met = moving.meet(from, 0.0, track, Vec3::Zero(), way, way.leg.arrivals.front());
+  EXPECT_NEAR(met.time, time, 1e-7);
+  EXPECT_NEAR((met.way.end.velocity - velocity).norm(), 0.0, 1e-9);
+}
+
 }  // namespace
 }  // namespace asdic::detail
