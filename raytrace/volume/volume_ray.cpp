@@ -3,17 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 
 #include "core/geometry.h"
 
 namespace asdic::detail {
 namespace {
 
-using RayVector = Eigen::Matrix<double, 20, 1, Eigen::DontAlign>;  // x, p, X, P, length, nepers
+using RayVector = Eigen::Matrix<double, 19, 1, Eigen::DontAlign>;  // x, p, X, P, length
 
 constexpr double touching_boundary = 1e-9;  // [m]
 constexpr int most_volume_steps = 200000;
-constexpr double tolerable_nepers = 1e-5;  // of a step
+constexpr double tolerable_nepers = 1e-6;  // of a piece of a step
 
 RayVector packed_state(const VolumeState& s) noexcept {
   RayVector y;
@@ -24,7 +25,6 @@ RayVector packed_state(const VolumeState& s) noexcept {
     y.segment<3>(12 + 3 * k) = s.p_launch.col(k);
   }
   y[18] = s.length;
-  y[19] = s.nepers;
   return y;
 }
 
@@ -37,7 +37,6 @@ VolumeState unpacked_state(const RayVector& y, double time) noexcept {
     s.p_launch.col(k) = y.segment<3>(12 + 3 * k);
   }
   s.length = y[18];
-  s.nepers = y[19];
   s.time = time;
   return s;
 }
@@ -493,15 +492,48 @@ class VolumeTracer::Run {
     // straight pieces between the samples: trapezes are exact
     const double top = std::min(from, to), bottom = std::max(from, to);
     double sum = 0.0, z = top;
-    for (const double sample : loss.depths()) {
-      if (sample <= z) continue;
-      const double next = std::min(sample, bottom);
+    const std::span<const double> depths = loss.depths();
+    for (auto sample = std::ranges::upper_bound(depths, z); sample != depths.end(); ++sample) {
+      const double next = std::min(*sample, bottom);
       sum += 0.5 * (loss.at(z) + loss.just_above(next)) * (next - z);
       z = next;
       if (z >= bottom) break;
     }
     sum += loss.at(z) * (bottom - z);
     return sum / (bottom - top) * length;
+  }
+
+  /// ∫ attenuation ds along a step, up to a share of it: over straight pieces, halved until both
+  /// halves agree with the whole. Attenuation may jump from layer to layer, as that of biology
+  /// does. \param length  of that part of the step [m]
+  [[nodiscard]] double absorbed(const StepChord& chord, double part, double length) const {
+    if (tracer_.attenuation_.is_constant()) return absorbed(0.0, 0.0, length);
+    double sum = 0.0, straight = 0.0;
+    const auto over = [&](const Vec3& a, const Vec3& b) {
+      return absorbed(a.z(), b.z(), (b - a).norm());
+    };
+    const auto add = [&](const auto& self, double u, const Vec3& a, double v, const Vec3& b,
+                         double whole, int halvings) -> void {
+      const double w = 0.5 * (u + v);
+      const Vec3 middle = chord.at(w);
+      const double first = over(a, middle), second = over(middle, b);
+      if (halvings == 0 || std::abs(first + second - whole) < tolerable_nepers) {
+        sum += first + second;
+        straight += (middle - a).norm() + (b - middle).norm();
+        return;
+      }
+      self(self, u, a, w, middle, first, halvings - 1);
+      self(self, w, middle, v, b, second, halvings - 1);
+    };
+    constexpr int pieces = 4, most_halvings = 20;
+    Vec3 from = chord.a;
+    for (int i = 0; i < pieces; ++i) {
+      const double u = part * i / pieces, v = part * (i + 1) / pieces;
+      const Vec3 to = chord.at(v);
+      add(add, u, from, v, to, over(from, to), most_halvings);
+      from = to;
+    }
+    return straight > 0.0 ? sum * (length / straight) : 0.0;
   }
 
   [[nodiscard]] RayVector rate(const RayVector& y) const {
@@ -518,12 +550,11 @@ class VolumeTracer::Run {
       d.segment<3>(12 + 3 * k) = -(water.hessian * dx) / c + water.gradient * (dc / c2);
     }
     d[18] = c;
-    d[19] = tracer_.attenuation_.at(x.z()) * c;
     return d;
   }
 
-  /// One step of Dormand & Prince, J. Comp. Appl. Math. 6, 19 (1980). \param error  of the place,
-  /// the tube and the absorption, in tolerances
+  /// One step of Dormand & Prince, J. Comp. Appl. Math. 6, 19 (1980). \param error  of the place
+  /// and the tube, in tolerances
   [[nodiscard]] RayVector stepped(const RayVector& y, const RayVector& k1, double h, double* error,
                                   RayVector* last) const {
     const RayVector k2 = rate(y + h * (1.0 / 5.0) * k1);
@@ -541,10 +572,8 @@ class VolumeTracer::Run {
     const RayVector e = h * (71.0 / 57600.0 * k1 - 71.0 / 16695.0 * k3 + 71.0 / 1920.0 * k4 -
                              17253.0 / 339200.0 * k5 + 22.0 / 525.0 * k6 - 1.0 / 40.0 * *last);
     const double tube = std::max(1.0, y.segment<6>(6).norm());
-    // Absorption may jump from layer to layer, as that of biology does.
-    *error = std::max({e.segment<3>(0).norm() / limits_.tolerance,
-                       e.segment<6>(6).norm() / (tube * std::max(1e-9, 1e-3 * limits_.tolerance)),
-                       std::abs(e[19]) / tolerable_nepers});
+    *error = std::max(e.segment<3>(0).norm() / limits_.tolerance,
+                      e.segment<6>(6).norm() / (tube * std::max(1e-9, 1e-3 * limits_.tolerance)));
     return end;
   }
 
@@ -592,6 +621,7 @@ class VolumeTracer::Run {
     if (course_ == nullptr) note_closest_bent(y, k1, chord, h, part);
     const VolumeState before = s_;
     s_ = unpacked_state(now, before.time + part * h);
+    s_.nepers = before.nepers + absorbed(chord, part, s_.length - before.length);
     count_turns(before);
     history_.caustics += folds_on_step(before, s_, c);
     s_.p *= 1.0 / (s_.p.norm() * ocean_.speed(s_.x, cell_.index).c);
@@ -715,6 +745,7 @@ class VolumeTracer::Run {
     double u = 0.5 * (low + high);
     RayVector at = stepped(y, k1, u * h, nullptr, nullptr);
     VolumeState here = unpacked_state(at, s_.time + u * h);
+    here.nepers = s_.nepers + absorbed(chord, u, here.length - s_.length);
     const double c = ocean_.speed(here.x, cell_.index).c;
     const VolumeState before = s_;
     add_pass(here, c, history_.caustics + folds_on_step(before, here, 1.0 / before.p.norm()), 0.0);

@@ -116,7 +116,7 @@ TEST(VolumeTracer, AbsorptionMayJump) {
     });
     ASSERT_NE(b, found.end());
     EXPECT_GT(a.absorption_db, 10.0);
-    EXPECT_NEAR(b->absorption_db, a.absorption_db, 0.03);
+    EXPECT_NEAR(b->absorption_db, a.absorption_db, 1e-4);
   }
 }
 
