@@ -13,7 +13,7 @@ namespace {
 
 constexpr double sea_gravity = 9.81;  // [m/s²]
 constexpr double sea_beta = 0.74;     // of Pierson & Moskowitz, wind at 19.5 m
-constexpr int most_waves = 200;       // beyond, the sum of so many stands for more, by its variance
+constexpr double most_waves = 200.0;  // beyond, the sum of so many stands for more, by its variance
 constexpr int most_tries = 400;       // of a draw that leaves the boundary
 
 /// Wind over a fully developed sea of a height, at 19.5 m [m/s].
@@ -59,35 +59,51 @@ std::vector<RoughBounce> rough_bounces(const Environment& ocean, const Arrival& 
   return found;
 }
 
-/// Poisson's law, at least one; of large means by the normal law.
-int at_least_one(double mean, RandomStream& draws) {
-  if (mean > 100.0)
-    return std::max(1, static_cast<int>(std::lround(mean + std::sqrt(mean) * draws.normal())));
-  // P(N ≥ 1) u counts down the law from 1 on
-  double term = mean * std::exp(-mean), left = -std::expm1(-mean) * draws.uniform();
-  int n = 1;
-  while ((left -= term) > 0.0 && n < 1000) term *= mean / ++n;
-  return n;
-}
+/// Number of waves of the sea in a kink.
+struct WaveCount {
+  int drawn = 1;      ///< number of waves drawn
+  double root = 1.0;  ///< by which their sum is multiplied, so that it stands for more
+};
 
-/// `count` waves of the sea: Σ K along and across the way, Σ ±√(gK).
-Kink waves(const RoughBounce& at, int count, Sea sea, RandomStream& draws) {
-  const int drawn = std::min(count, most_waves);
-  double along = 0.0, across = 0.0, omega = 0.0;
-  for (int i = 0; i < drawn; ++i) {
-    const double wave = at.scale / std::sqrt(-std::log(draws.uniform()));
-    const double u = draws.uniform();
-    const double towards = sea == Sea::isotropic ? 2.0 * pi * u : u < 0.5 ? 0.0 : pi;
-    const double way = draws.uniform() < 0.5 ? -1.0 : 1.0;
-    along += wave * std::cos(towards);
-    across += wave * std::sin(towards);
-    if (at.moves) omega += way * std::sqrt(sea_gravity * wave);
+/// Poisson's law, at least one wave; of large means the normal law.
+class WaveCounts {
+ public:
+  explicit WaveCounts(double mean)
+      : mean_(mean), one_(mean * std::exp(-mean)), any_(-std::expm1(-mean)) {}
+
+  [[nodiscard]] WaveCount of(const SeaDraws::Chances& chances) const {
+    if (mean_ > 100.0) {
+      const double normal = std::sqrt(-2.0 * std::log(chances.normal_radius)) *
+                            std::cos(2.0 * pi * chances.normal_angle);
+      return standing_for(std::max(1.0, mean_ + std::sqrt(mean_) * normal));
+    }
+    // P(N ≥ 1) u counts down the law from 1 on
+    double term = one_, left = any_ * chances.count;
+    int n = 1;
+    while ((left -= term) > 0.0 && n < 1000) term *= mean_ / ++n;
+    return {.drawn = n};
   }
-  const double grown = std::sqrt(double(count) / drawn);
+
+ private:
+  /// Numbers a tenth apart, so that a mean that changes a little asks for the same waves.
+  static WaveCount standing_for(double count) {
+    double drawn = 1.0;
+    while (std::floor(1.1 * drawn + 1.0) <= std::min(count, most_waves))
+      drawn = std::floor(1.1 * drawn + 1.0);
+    return {static_cast<int>(drawn), std::sqrt(count / drawn)};
+  }
+
+  double mean_, one_, any_;
+};
+
+/// Waves of the sea that are drawn in a try: Σ K along and across the way, Σ ±√(gK).
+Kink waves(const RoughBounce& at, const WaveCount& count, const SeaDraws::Try& draw,
+           SeaDraws& draws) {
+  const WaveSum sum = draws.sum(draw, count.drawn);
   Kink kink;
-  kink.along_way = grown * along;
-  kink.across = grown * across;
-  kink.omega = grown * omega;
+  kink.along_way = count.root * at.scale * double(sum.along);
+  kink.across = count.root * at.scale * double(sum.across);
+  if (at.moves) kink.omega = count.root * std::sqrt(sea_gravity * at.scale) * double(sum.omega);
   return kink;
 }
 
@@ -181,34 +197,48 @@ class Facets {
   double before_, after_, length_;
 };
 
-/// A kink that joins the ends of the path: by one wave of the sea, or by the slope of many.
-/// \param strongest  Facets::strongest_slope(), found at the first call; 0: not known yet
-Kink kink_at(const RoughBounce& at, double length, double& strongest, Sea sea,
-             RandomStream& draws) {
-  const Facets facets(at, length);
-  const double slopes = -2.0 * at.k * at.sine;  // K over slope
-  for (int i = 0; i < most_tries; ++i) {
-    const int count = at_least_one(at.mean_waves, draws);
-    Kink kink = waves(at, count, sea, draws);
-    const double chance = draws.uniform();
-    kink.aside = kink.across / at.k;
-    if (!(std::abs(kink.aside) < 1.0)) continue;
-    if (count == 1 && !(std::abs(kink.along_way) < 2.0 * at.k)) continue;
-    if (strongest == 0.0) strongest = facets.strongest_slope();
-    const Facet there =
-        count == 1 ? facets.by_wave(kink.along_way) : facets.by_slope(kink.along_way / slopes);
-    const double weight = count == 1 ? facets.weight_of_wave(there) : facets.weight_of_slope(there);
-    if (!(chance * strongest < weight)) continue;
-    const double in = std::atan2(there.sine_in, there.cosine_in),
-                 out = std::atan2(there.sine_out, there.cosine_out);
-    kink.down = out - in;
-    kink.out = out - at.grazing;
-    kink.excess = there.way_in + there.way_out - length +
-                  0.5 * kink.aside * kink.aside * at.along * (length - at.along) / length;
-    return kink;
+/// Kinks of the parts at one bounce. Each joins the ends of the path: by one wave of the sea, or by
+/// the slope of many.
+class KinksOfBounce {
+ public:
+  KinksOfBounce(const RoughBounce& at, double length, SeaDraws& draws)
+      : at_(at), length_(length), facets_(at, length), counts_(at.mean_waves), draws_(draws) {}
+
+  /// \param first  the first try of the part at this bounce
+  Kink draw(const SeaDraws::Try& first) {
+    const double slopes = -2.0 * at_.k * at_.sine;  // K over slope
+    for (SeaDraws::Try one = first; one.number < most_tries; ++one.number) {
+      const SeaDraws::Chances chances = draws_.chances(one);
+      const WaveCount count = counts_.of(chances);
+      Kink kink = waves(at_, count, one, draws_);
+      kink.aside = kink.across / at_.k;
+      if (!(std::abs(kink.aside) < 1.0)) continue;
+      const bool single = count.drawn == 1;
+      if (single && !(std::abs(kink.along_way) < 2.0 * at_.k)) continue;
+      if (strongest_ == 0.0) strongest_ = facets_.strongest_slope();
+      const Facet there =
+          single ? facets_.by_wave(kink.along_way) : facets_.by_slope(kink.along_way / slopes);
+      const double weight = single ? facets_.weight_of_wave(there) : facets_.weight_of_slope(there);
+      if (!(chances.acceptance * strongest_ < weight)) continue;
+      const double in = std::atan2(there.sine_in, there.cosine_in),
+                   out = std::atan2(there.sine_out, there.cosine_out);
+      kink.down = out - in;
+      kink.out = out - at_.grazing;
+      kink.excess = there.way_in + there.way_out - length_ +
+                    0.5 * kink.aside * kink.aside * at_.along * (length_ - at_.along) / length_;
+      return kink;
+    }
+    return {};
   }
-  return {};
-}
+
+ private:
+  const RoughBounce& at_;
+  double length_;
+  Facets facets_;
+  WaveCounts counts_;
+  SeaDraws& draws_;
+  double strongest_ = 0.0;  // Facets::strongest_slope(), once it is asked for
+};
 
 /// Length that the kinks of one leg add to it [m]: the sum of their own, and δ_i δ_j s_<(L − s_>)/L
 /// for every two of them, for turns down and for turns aside.
@@ -251,18 +281,18 @@ std::uint64_t scatter_history(const Arrival& path) noexcept {
 }
 
 RoughPath rough_path(const Environment& ocean, const Arrival& path, double frequency, int parts,
-                     std::uint64_t seed, std::uint64_t entity, Sea sea) {
+                     SeaDraws& draws, std::uint64_t entity) {
   RoughPath rough{.length = path.path_length,
                   .delay = path.delay,
                   .bounces = rough_bounces(ocean, path, frequency),
                   .kinks = {}};
-  if (rough.bounces.empty()) return rough;
-  std::vector<double> strongest(rough.bounces.size(), 0.0);
-  rough.kinks.reserve(static_cast<std::size_t>(parts) * rough.bounces.size());
-  for (int part = 0; part < parts; ++part) {
-    RandomStream draws(seed, Draw::forward_scatter, static_cast<std::uint32_t>(part), ~entity);
-    for (std::size_t i = 0; i < rough.bounces.size(); ++i)
-      rough.kinks.push_back(kink_at(rough.bounces[i], rough.length, strongest[i], sea, draws));
+  const std::size_t bounces = rough.bounces.size();
+  rough.kinks.resize(static_cast<std::size_t>(parts) * bounces);
+  for (std::size_t i = 0; i < bounces; ++i) {
+    KinksOfBounce kinks(rough.bounces[i], rough.length, draws);
+    for (int part = 0; part < parts; ++part)
+      rough.kinks[static_cast<std::size_t>(part) * bounces + i] =
+          kinks.draw({.path = entity, .part = part, .bounce = i});
   }
   return rough;
 }

@@ -7,6 +7,7 @@
 #include "core/units.h"
 #include "raytrace/ocean/arrivals.h"
 #include "raytrace/ocean/environment.h"
+#include "reverb/scattering/sea_draws.h"
 
 namespace asdic::detail {
 
@@ -42,11 +43,11 @@ struct RoughPath {
   std::vector<Kink> kinks;           ///< [parts × bounces]
 };
 
-/// Draws the kinks of a path, keyed by the seed and `entity`; they do not depend on the ping.
-/// \param entity  which path of what, the same from ping to ping   \param frequency  [Hz]
+/// Draws the kinks of a path; they do not depend on the ping.
+/// \param frequency  [Hz]   \param draws  of the scenario's seed
+/// \param entity  which path of what, the same from ping to ping
 [[nodiscard]] RoughPath rough_path(const Environment& ocean, const Arrival& path, double frequency,
-                                   int parts, std::uint64_t seed, std::uint64_t entity,
-                                   Sea sea = Sea::isotropic);
+                                   int parts, SeaDraws& draws, std::uint64_t entity);
 
 /// One way of the sound between two ends, along one path.
 struct ScatteredLeg {

@@ -91,6 +91,7 @@ Vec3 receive(const EchoContext& context, int channel, DirectBlast& blast) {
                                                 .paths = paths.leg.arrivals,
                                                 .frequency = context.frequency,
                                                 .limits = paths.limits});
+  SeaDraws draws(context.scenario().seed);
   for (std::size_t i = 0; i < paths.met.size(); ++i) {
     const MetPath& met = paths.met[i];
     const EchoPath path_received = received_along(context, source, met);
@@ -98,7 +99,7 @@ Vec3 receive(const EchoContext& context, int channel, DirectBlast& blast) {
     blast.received.push_back(path_received);
     scatter_along(context, source, 0.0, met,
                   mixed(static_cast<std::uint64_t>(geometry.sent().transmitter), ~0ULL),
-                  path_received, blast.received);
+                  path_received, draws, blast.received);
     for (EchoPath& one : std::span(blast.received).subspan(own)) {
       one.received.delay -= one.received.slowness.dot(x);  // at the reference point
       one.received.channel = channel < 0 ? Return::all_channels : channel;

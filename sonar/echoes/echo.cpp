@@ -44,6 +44,7 @@ class EchoFinder {
       : context_(context),
         geometry_(context.geometry),
         scenario_(context.scenario()),
+        draws_(scenario_.seed),
         phones_(geometry_.phones(context.array)),
         target_(scenario_.targets[static_cast<std::size_t>(target)]),
         index_(target),
@@ -210,8 +211,7 @@ class EchoFinder {
                                             receiver.track, receiver.offset, home, *path)};
   }
 
-  void pair_up(const Kinematics& source, const Way& out, const Way& back,
-               TargetEchoes& result) const {
+  void pair_up(const Kinematics& source, const Way& out, const Way& back, TargetEchoes& result) {
     const int channel = back.leg.channel;
     const Carried receiver = this->receiver(channel);
     const std::vector<RoughPath> rough_home = rough_paths(back.leg.arrivals, 2);
@@ -359,11 +359,10 @@ class EchoFinder {
   }
 
   /// \param leg  1: outgoing; 2: returning
-  [[nodiscard]] std::vector<RoughPath> rough_paths(const Arrivals& paths, std::uint64_t leg) const {
+  [[nodiscard]] std::vector<RoughPath> rough_paths(const Arrivals& paths, std::uint64_t leg) {
     std::vector<RoughPath> found;
     for (const Arrival& path : paths)
-      found.push_back(rough_path(scenario_.environment, path, context_.frequency, parts_,
-                                 scenario_.seed,
+      found.push_back(rough_path(scenario_.environment, path, context_.frequency, parts_, draws_,
                                  mixed(mixed(entity(), leg), scatter_history(path))));
     return found;
   }
@@ -607,6 +606,7 @@ class EchoFinder {
   const EchoContext& context_;
   const PingGeometry& geometry_;
   const Scenario& scenario_;
+  SeaDraws draws_;
   const std::vector<Vec3>& phones_;
   const Target& target_;
   int index_;

@@ -32,7 +32,7 @@ EchoPath received_along(const EchoContext& context, const Kinematics& sender, co
 
 void scatter_along(const EchoContext& context, const Kinematics& sender, double sent,
                    const MetPath& met, std::uint64_t ends, const EchoPath& received,
-                   std::vector<EchoPath>& found) {
+                   SeaDraws& draws, std::vector<EchoPath>& found) {
   constexpr int parts = 16;
   const Arrival& path = met.path;
   if (!(path.scattered > 1e-9 * std::norm(path.amplitude))) return;
@@ -40,7 +40,7 @@ void scatter_along(const EchoContext& context, const Kinematics& sender, double 
   const Scenario& scenario = context.scenario();
   const std::uint64_t entity = mixed(ends, scatter_history(path));
   const RoughPath rough =
-      rough_path(scenario.environment, path, context.frequency, parts, scenario.seed, entity);
+      rough_path(scenario.environment, path, context.frequency, parts, draws, entity);
   const ScatteredLeg leg{&rough, sender.position.head<2>(), met.way.leg.bearing,
                          context.geometry.time() + sent};
   for (const ScatteredPart& part :

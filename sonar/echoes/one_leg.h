@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "reverb/scattering/sea_draws.h"
 #include "sonar/echoes/echo.h"
 #include "sonar/paths/moving_paths.h"
 
@@ -15,10 +16,10 @@ namespace asdic::detail {
 
 /// Adds what rough boundaries scatter about that path. \param sent  when it leaves, since the ping
 /// [s]   \param ends  number of the pair of places, the same from ping to ping
-/// \param received  of the path's own
+/// \param received  of the path's own   \param draws  of the scenario's seed
 void scatter_along(const EchoContext& context, const Kinematics& sender, double sent,
                    const MetPath& met, std::uint64_t ends, const EchoPath& received,
-                   std::vector<EchoPath>& found);
+                   SeaDraws& draws, std::vector<EchoPath>& found);
 
 /// Where so many paths are told of, no more than so many bounces of each are: their places took a
 /// gigabyte. Counts of bounces stay. \param receivers  that are told of alike

@@ -105,13 +105,14 @@ class MovingLeg {
 
   /// \param with_waves  whether paths may be waves
   MovingLeg(const EchoContext& context, const MovingPaths& moving, bool with_waves, Place sender,
-            Carried receiver, std::uint64_t ends)
+            Carried receiver, std::uint64_t ends, SeaDraws& draws)
       : context_(context),
         moving_(moving),
         with_waves_(with_waves),
         sender_(std::move(sender)),
         receiver_(std::move(receiver)),
-        ends_(ends) {}
+        ends_(ends),
+        draws_(draws) {}
 
   /// All its paths for what leaves then. \param sent  since the ping [s]
   std::vector<LegPath> at(double sent) {
@@ -137,7 +138,7 @@ class MovingLeg {
       const SeenAside aside(at_receiver, met.path);
       found.push_back({received_along(context_, from, met), lag, aside});
       scattered.clear();
-      scatter_along(context_, from, sent, met, ends_, found.back().received, scattered);
+      scatter_along(context_, from, sent, met, ends_, found.back().received, draws_, scattered);
       for (EchoPath& part : scattered) found.push_back({std::move(part), lag, aside});
     }
     return found;
@@ -172,13 +173,14 @@ class MovingLeg {
   Place sender_;
   Carried receiver_;
   std::uint64_t ends_;
+  SeaDraws& draws_;
   Arrivals known_;  // of the last moment
 };
 
 class TwoSteps {
  public:
   TwoSteps(const EchoContext& context, const ManyEchoes& many, const TwoStepReceivers& receivers,
-           const Recording& recording, double max_doppler, const TwoStepBand& band)
+           const Recording& recording, double max_doppler, const TwoStepBand& band, SeaDraws& draws)
       : context_(context),
         geometry_(context.geometry),
         scenario_(context.scenario()),
@@ -190,6 +192,7 @@ class TwoSteps {
         latest_(end_of_record(scenario_)),
         limits_(limits_of(scenario_.propagation, many.followed)),
         band_(band),
+        draws_(draws),
         places_(target_.highlights.empty() ? 1 : target_.highlights.size()) {}
 
   Baseband receive() const {
@@ -300,7 +303,8 @@ class TwoSteps {
         context_, moving, with_waves(), [&](double since) { return geometry_.source_at(since); },
         {.track = target_.track},
         mixed(static_cast<std::uint64_t>(geometry_.sent().transmitter),
-              mixed(1, target_identity(scenario_, index_))));
+              mixed(1, target_identity(scenario_, index_))),
+        draws_);
     for_each_piece({pulse},
                    cuts({&leg, 1}, pulse, course_changes(geometry_.sender().track),
                         !course_changes(target_.track).empty(), highest(), 2.0 * body_radius()),
@@ -410,7 +414,7 @@ class TwoSteps {
     for (std::size_t n = 0; n < (own ? receivers_.phones.size() : 1); ++n)
       legs.emplace_back(
           context_, moving, with_waves(), [&](double since) { return target_at(since); },
-          geometry_.receiver(array, own ? static_cast<int>(n) : -1), ends);
+          geometry_.receiver(array, own ? static_cast<int>(n) : -1), ends, draws_);
     for_each_piece(
         struck,
         cuts(legs, struck.front(), course_changes(target_.track),
@@ -470,6 +474,7 @@ class TwoSteps {
   double latest_;  // end of the record [s]
   PathLimits limits_;
   const TwoStepBand& band_;
+  SeaDraws& draws_;     // of both legs
   std::size_t places_;  // number of the target's highlights, or 1
 };
 
@@ -477,8 +482,8 @@ class TwoSteps {
 
 Baseband two_step_echo(const EchoContext& context, const ManyEchoes& many,
                        const TwoStepReceivers& receivers, const Recording& recording,
-                       double max_doppler, const TwoStepBand& band) {
-  return TwoSteps(context, many, receivers, recording, max_doppler, band).receive();
+                       double max_doppler, SeaDraws& draws, const TwoStepBand& band) {
+  return TwoSteps(context, many, receivers, recording, max_doppler, band, draws).receive();
 }
 
 TwoStepSound two_step_sound(const EchoContext& context, const ManyEchoes& many,
@@ -486,8 +491,10 @@ TwoStepSound two_step_sound(const EchoContext& context, const ManyEchoes& many,
                             const TwoStepBand& band) {
   const std::vector<Vec3>& phones = context.geometry.phones(context.array);
   const bool own_peak = context.scenario().propagation.exact_per_phone;
+  SeaDraws draws(context.scenario().seed);
   const auto received_at = [&](std::vector<Vec3> places, bool by_themselves) {
-    return two_step_echo(context, many, {places, by_themselves}, recording, max_doppler, band);
+    return two_step_echo(context, many, {places, by_themselves}, recording, max_doppler, draws,
+                         band);
   };
   const auto peak_of = [](const Baseband& sound, std::size_t channel) {
     return sound.channels > 0 ? largest_envelope(sound, channel) : 0.0;

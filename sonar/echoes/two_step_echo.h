@@ -1,6 +1,7 @@
 #pragma once
 #include <span>
 
+#include "reverb/scattering/sea_draws.h"
 #include "sonar/echoes/echo.h"
 #include "sonar/echoes/sparse_sound.h"
 #include "sonar/synthesis/synthesis.h"
@@ -23,11 +24,13 @@ struct TwoStepReceivers {
 /// path). What rough boundaries scatter is drawn for each leg by itself.
 /// Source: docs/theory/echoes.md, "Many paths"
 /// \param many  as target_echoes() found them   \param followed  bounces off either boundary
+/// \param draws  of the scenario's seed
 /// \param band  two_step_band(); empty: amplitudes at the centre serve the whole band
 /// \return [phones] over the pulse's peak at 1 m
 [[nodiscard]] Baseband two_step_echo(const EchoContext& context, const ManyEchoes& many,
                                      const TwoStepReceivers& receivers, const Recording& recording,
-                                     double max_doppler, const TwoStepBand& band = {});
+                                     double max_doppler, SeaDraws& draws,
+                                     const TwoStepBand& band = {});
 
 /// The same at the phones that the context asks for, with its peak.
 struct TwoStepSound {

@@ -178,6 +178,7 @@ void Interference::scatter(const Interferer& ship, double time,
   for (const Received& one : received)
     loudest = std::max(loudest, std::norm(one.path.path.amplitude) + one.path.path.scattered);
   const auto number = static_cast<std::uint64_t>(&ship - scenario_.interferers.data());
+  SeaDraws draws(scenario_.seed);
   for (Received& one : received) {
     const Arrival& path = one.path.path;
     if (!(path.scattered > 1e-9 * std::norm(path.amplitude))) continue;
@@ -185,7 +186,7 @@ void Interference::scatter(const Interferer& ship, double time,
     const std::uint64_t entity = mixed(mixed(number, ~1ULL), scatter_history(path));
     const int parts = path.scattered > 0.01 * loudest ? most_parts : 1;
     const RoughPath rough =
-        rough_path(scenario_.environment, path, frequency_, parts, scenario_.seed, entity);
+        rough_path(scenario_.environment, path, frequency_, parts, draws, entity);
     const ScatteredLeg leg{&rough, ship.track.at(left).position.head<2>(), one.path.bearing, left};
     one.parts = forward_scatter(scenario_.environment, std::span(&leg, 1), frequency_, parts,
                                 scenario_.seed, entity);

@@ -38,7 +38,8 @@ Arrival bounced(const Environment& ocean, double grazing, double slant, double f
 std::vector<ScatteredPart> parts_of(const Environment& ocean, const Arrival& path, double frequency,
                                     int parts, std::uint64_t entity, double time = 0.0,
                                     Sea sea = Sea::isotropic, Vec2 from = Vec2::Zero()) {
-  const RoughPath rough = rough_path(ocean, path, frequency, parts, 1, entity, sea);
+  SeaDraws draws(1, sea);
+  const RoughPath rough = rough_path(ocean, path, frequency, parts, draws, entity);
   const ScatteredLeg leg{&rough, from, 0.5 * pi, time};
   return forward_scatter(ocean, std::span(&leg, 1), frequency, parts, 1, entity);
 }
@@ -234,7 +235,8 @@ TEST(ForwardScatter, KinksJoinTheEnds) {
     const double k = 2.0 * pi * frequency / 1500.0;
     const Arrival path = bounced(ocean, radians(6.0), 700.0, frequency);
     const double length = path.path_length, grazing = path.bounces[0].grazing;
-    const RoughPath rough = rough_path(ocean, path, frequency, 500, 1, 5);
+    SeaDraws draws(1);
+    const RoughPath rough = rough_path(ocean, path, frequency, 500, draws, 5);
     ASSERT_EQ(rough.bounces.size(), 1U);
     ASSERT_EQ(rough.kinks.size(), 500U);
     const double before = rough.bounces[0].along, after = length - before;
@@ -251,7 +253,10 @@ TEST(ForwardScatter, KinksJoinTheEnds) {
                   1e-9 * length);
       EXPECT_NEAR(d1 / std::tan(in) + d2 / std::tan(out), length * std::cos(grazing),
                   1e-9 * length);
-      if (std::abs(kink.along_way - k * (std::cos(out) - std::cos(in))) < 1e-9 * k) ++one_by_one;
+      // Of small slopes both laws are one.
+      if (std::abs(kink.down) > 1e-3 &&
+          std::abs(kink.along_way - k * (std::cos(out) - std::cos(in))) < 1e-9 * k)
+        ++one_by_one;
     }
     EXPECT_GT(turned, 250);
     if (wind < 5.0)  // G² = 0.01: fewer than 20 of 500 kinks have two waves

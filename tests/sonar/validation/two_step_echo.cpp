@@ -100,8 +100,9 @@ Received receive(const Scenario& s, std::size_t most_pairs) {
     if (wide)
       parts = two_step_band(context, s.transmitters[0], received.echoes.echoes, c * many->last,
                             recording, max_doppler);
-    const Baseband more =
-        two_step_echo(context, *many, {phones, many->at_phones}, recording, max_doppler, parts);
+    SeaDraws draws(s.seed);
+    const Baseband more = two_step_echo(context, *many, {phones, many->at_phones}, recording,
+                                        max_doppler, draws, parts);
     if (more.channels > 0) add_resampled(more, received.sound);
   }
   return received;
