@@ -120,13 +120,14 @@ Bounces search_bounces(const PropagationSettings& settings, const BounceSearch& 
     ReceivedBounces received(search.segments, search.latest, most, search.floor, asked);
     look(limits_of(unlimited(settings), most), received);
     const EnergyByBounces& by_most = received.by_most();
-    const bool converged = by_most.converged(search.tolerance_db);
+    const double left_out_by_numbers = numbers ? received.by_numbers().left_out_db(0) : 0.0;
+    const bool converged = by_most.converged(search.tolerance_db) ||
+                           std::isinf(left_out_by_numbers);  // no more can be
     const bool too_many = !converged && received.paths() > search.most_paths;
     if (!converged && !too_many && most < search.most) continue;
     const int bounces = too_many ? before : by_most.enough(search.tolerance_db);
     Bounces followed = numbers ? asked : as_asked(settings, bounces);
-    followed.left_out_db =
-        numbers ? received.by_numbers().left_out_db(0) : by_most.estimate_db(bounces, converged);
+    followed.left_out_db = numbers ? left_out_by_numbers : by_most.estimate_db(bounces, converged);
     // Nobody looked beyond the last try, whatever number is asked for.
     if (too_many)
       followed.left_out_db = std::max(followed.left_out_db, by_most.left_out_db(most / 2));

@@ -441,6 +441,23 @@ TEST(EnoughBounces, EndWherePathsMultiplyAndSaySo) {
   EXPECT_GT(asked.left_out_db, tolerable_db);
 }
 
+// Where at some time all there is has more bounces than the numbers asked for, nothing worse can be
+// found, and the first try is the last.
+TEST(EnoughBounces, EndWhereNumbersLackAllOfIt) {
+  int looked_to = 0;
+  const auto look = [&](const PathLimits& limits, ReceivedBounces& received) {
+    looked_to = limits.max_bottom_bounces;
+    for (int n = 0; n <= looked_to; ++n) received.add(n, n, n, 1.0);
+  };
+  const BounceSearch at_all{.first = 8, .most = 64, .segments = 1, .latest = 100.0};
+  const PropagationSettings numbers{.max_surface_bounces = 2, .max_bottom_bounces = 2};
+  EXPECT_TRUE(std::isfinite(search_bounces(numbers, at_all, look).left_out_db));
+  EXPECT_EQ(looked_to, 64);
+  const BounceSearch by_time{.first = 8, .most = 64, .segments = 4, .latest = 8.0};
+  EXPECT_TRUE(std::isinf(search_bounces(numbers, by_time, look).left_out_db));
+  EXPECT_EQ(looked_to, 8);
+}
+
 // A search in three dimensions that is ended for its cost is told, and told how to do without.
 TEST(EnoughBounces, SearchesInThreeDimensionsThatEndEarlyAreTold) {
   EXPECT_EQ(ended_early(0), "");
