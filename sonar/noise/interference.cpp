@@ -312,12 +312,14 @@ std::complex<double> phasor(double cycles) {
 
 /// A chunk of one path whose losses depend on frequency: Σ_k A_k(t)·q_k on the samples of the
 /// source that it spans, interpolated and turned as one signal. \param u  where it lies between
-/// the nodes, and how fast that grows   \param at  place of its first sample in the source
-/// \param step  from sample to sample   \param z, turn  phase of the first, and from one to the
-/// next
-void Interference::add_band(const Segment& path, std::span<const float> source, std::size_t length,
-                            std::array<double, 2> u, double at, double step, std::complex<double> z,
-                            std::complex<double> rotation, std::span<std::complex<double>> sum) {
+/// the nodes, and how fast that grows   \param begin  number of the first of `source`
+/// \param at  place of the chunk's first sample in the source, from sample 0 on, so that rounding
+/// is the same whatever part of the record is wanted   \param step  from sample to sample   \param
+/// z, turn  phase of the first, and from one to the next
+void Interference::add_band(const Segment& path, std::span<const float> source, std::int64_t begin,
+                            std::size_t length, std::array<double, 2> u, double at, double step,
+                            std::complex<double> z, std::complex<double> rotation,
+                            std::span<std::complex<double>> sum) {
   const FractionalDelay& between_samples = FractionalDelay::shared();
   constexpr std::int64_t reach = FractionalDelay::taps;
   const auto last = static_cast<double>(sum.size() - 1);
@@ -327,7 +329,7 @@ void Interference::add_band(const Segment& path, std::span<const float> source, 
   std::vector<float> filtered(2 * static_cast<std::size_t>(end - first), 0.0F);
   for (std::size_t k = 0; k < path.band[0].size(); ++k) {
     const std::complex<double> slope = path.band[1][k] - path.band[0][k];
-    const float* q = source.data() + k * length + 2 * first;
+    const float* q = source.data() + k * length + 2 * (first - begin);
     for (std::int64_t j = 0; j < end - first; ++j) {
       // The output's sample that is received there; amplitudes hardly change from one to the next.
       const double i = (static_cast<double>(first + j) - at) / step;
@@ -455,7 +457,7 @@ std::vector<ReceivedPath> Interference::add(const RecordSamples& record, std::in
           const double clock_cycles =
               carrier_ * (clock.carrier_zero + static_cast<double>(sample) / clock.rate);
           if (broadband && !band_.empty()) {
-            add_band(*path, source, part_length, {u0, du}, left * source_rate_ - double(begin),
+            add_band(*path, source, begin, part_length, {u0, du}, left * source_rate_,
                      step * source_rate_,
                      moved * phasor(source_carrier_ * left) * std::conj(phasor(clock_cycles)),
                      moves * phasor(source_carrier_ * step - carrier_ / clock.rate), sum);

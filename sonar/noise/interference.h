@@ -65,9 +65,10 @@ class Interference {
   [[nodiscard]] bool plane_waves(const Interferer& ship, int array, const RecordSamples& record,
                                  const Clock& clock) const;
 
-  static void add_band(const Segment& path, std::span<const float> source, std::size_t length,
-                       std::array<double, 2> u, double at, double step, std::complex<double> z,
-                       std::complex<double> rotation, std::span<std::complex<double>> sum);
+  static void add_band(const Segment& path, std::span<const float> source, std::int64_t begin,
+                       std::size_t length, std::array<double, 2> u, double at, double step,
+                       std::complex<double> z, std::complex<double> rotation,
+                       std::span<std::complex<double>> sum);
 
   const Scenario& scenario_;
   const PropagationPaths& paths_;
