@@ -494,6 +494,23 @@ double ScatteringSheet::nearest_end(const Vec2& place, double depth) const noexc
   return std::min(distance(ends_.source.position), distance(ends_.receiver.position));
 }
 
+double ScatteringSheet::largest_piece(const Vec2& place, double depth, double size) const noexcept {
+  constexpr double steepest = 0.5, step = 0.15;  // tilt of facets of a rough sea or floor
+  const auto from_place = [&](const Vec3& end) {
+    return Vec3(end.x() - place.x(), end.y() - place.y(), end.z() - depth);
+  };
+  const Vec3 out = from_place(ends_.source.position), back = from_place(ends_.receiver.position);
+  const double r1 = std::max(out.norm(), 1e-3), r2 = std::max(back.norm(), 1e-3);
+  const double quarter = 0.25 * std::min(r1, r2);
+  // Straight lines: half of both directions' sum is a facet's normal, which a way y along the
+  // ground tilts by y (1/r₁ + 1/r₂) over the vertical part of the sum.
+  const Vec3 normal = out / r1 + back / r2;
+  const double upright = std::abs(normal.z()), by_metre = 1.0 / r1 + 1.0 / r2;
+  const double tilted = normal.head<2>().norm() - 0.5 * size * by_metre;
+  if (tilted > steepest * upright) return quarter;
+  return std::min(quarter, std::max(step * upright / by_metre, 1e-3 * quarter));
+}
+
 Vec3 ScatteringSheet::arriving(const PathPair& pair) const noexcept {
   const double level = pair.back_ends->launch_level;
   return {level * pair.coming.x(), level * pair.coming.y(), -pair.back_ends->launch_down};

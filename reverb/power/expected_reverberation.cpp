@@ -99,50 +99,17 @@ struct Middles {
   [[nodiscard]] std::uint32_t count() const noexcept {
     return static_cast<std::uint32_t>(sectors.size());
   }
-  /// Adds the pairs of a ring. No piece is longer than a quarter of its distance from source and
-  /// receiver, nor wider than that distance.
+  /// Adds the pairs of a ring, in pieces no longer or wider than ScatteringSheet::largest_piece().
   void find(std::uint32_t ring, PathPairs& pairs, std::vector<Found>& out) const {
-    const double spacing = field.grid.spacing;
-    const std::uint32_t stands_for = std::min(step, field.grid.rings - ring);
-    const double inner = ring * spacing, length = stands_for * spacing;
     const std::uint32_t stride = sectors_for_one(ring), looked_at = count() / stride;
     for (std::uint32_t i = 0; i < count(); i += stride) {
-      const int sector = field.sector_of_ring(sectors[i], count(), ring);
-      const double bearing = field.bearing(sector), width = 2.0 * pi / looked_at;
-      const double nearest = field.sheet.nearest_end(field.centre(ring, sector), field.depth);
-      const auto parts = [&](double size) {
-        constexpr double most = 32.0;
-        return static_cast<std::uint16_t>(std::clamp(std::ceil(size / nearest), 1.0, most));
-      };
-      const std::uint16_t along = parts(4.0 * spacing),
-                          around = field.azimuthally_symmetric()
-                                       ? std::uint16_t{1}
-                                       : parts((ring + 0.5) * spacing * width);
-      if (along == 1 && around == 1) {
-        at({.ring = ring,
-            .sector = i,
-            .range = (ring + 0.5) * spacing,
-            .bearing = bearing,
-            .length = length,
-            .width = 2.0 * pi * (ring + 0.5) * spacing / looked_at,
-            .share = double(stands_for) / looked_at},
-           pairs, out);
-        continue;
-      }
-      for (std::uint16_t j = 0; j < along; ++j)
-        for (std::uint16_t k = 0; k < around; ++k) {
-          const double range = inner + (j + 0.5) * length / along;
-          at({.ring = ring,
-              .sector = i,
-              .part = static_cast<std::uint16_t>(j * around + k),
-              .range = range,
-              .bearing = bearing + ((k + 0.5) / around - 0.5) * width,
-              .length = length / along,
-              .width = range * width / around,
-              .share = range / ((ring + 0.5) * spacing) * stands_for /
-                       (double(looked_at) * along * around)},
-             pairs, out);
-        }
+      Piece whole{.ring = ring,
+                  .sector = i,
+                  .bearing = field.bearing(field.sector_of_ring(sectors[i], count(), ring)),
+                  .stands_for = std::min(step, field.grid.rings - ring),
+                  .share = 1.0 / looked_at};
+      std::uint16_t parts = 0;
+      divide(whole, parts, pairs, out);
     }
   }
 
@@ -158,15 +125,62 @@ struct Middles {
     const double apart = std::max(away(ends.source.position), away(ends.receiver.position));
     return (ring + 0.5) * field.grid.spacing > far * apart ? count() / enough : 1;
   }
-  /// A piece of ground, or of a layer, with the pairs through its middle.
+  /// A piece of ground, or of a layer.
   struct Piece {
+    std::uint32_t ring = 0, sector = 0;
+    double bearing = 0.0;
+    std::uint32_t stands_for = 1;  // rings
+    double share = 0.0;            // of a whole turn
+  };
+  /// A part of it, with the pairs through its middle.
+  struct Part {
     std::uint32_t ring = 0, sector = 0;
     std::uint16_t part = 0;
     double range = 0.0, bearing = 0.0;
     double length = 0.0, width = 0.0;  // outward and beside that [m]
     double share = 0.0;                // of its ring's area
   };
-  void at(const Piece& piece, PathPairs& pairs, std::vector<Found>& out) const {
+
+  /// Halves a piece until its middle stands for all of its width: a wide sector may hold the place
+  /// above a receiver though its middle is far away.
+  void divide(const Piece& piece, std::uint16_t& parts, PathPairs& pairs,
+              std::vector<Found>& out) const {
+    constexpr double narrowest = 1.0 / 2304.0;  // of a turn
+    const double spacing = field.grid.spacing, middle = (piece.ring + 0.5) * spacing,
+                 width = 2.0 * pi * piece.share * middle;
+    const Vec2 place =
+        field.grid.anchor + middle * Vec2(std::sin(piece.bearing), std::cos(piece.bearing));
+    const auto largest = [&](double size) {
+      return field.sheet.largest_piece(place, field.depth, size);
+    };
+    if (!field.azimuthally_symmetric() && piece.share > narrowest && width > largest(width)) {
+      Piece half = piece;
+      half.share = 0.5 * piece.share;
+      for (const double side : {-0.5, 0.5}) {
+        half.bearing = piece.bearing + 2.0 * pi * side * half.share;
+        divide(half, parts, pairs, out);
+      }
+      return;
+    }
+    constexpr double most = 32.0;
+    const auto along =
+        static_cast<int>(std::clamp(std::ceil(spacing / largest(spacing)), 1.0, most));
+    const double length = piece.stands_for * spacing / along;
+    for (int j = 0; j < along; ++j) {
+      const double range = along == 1 ? middle : piece.ring * spacing + (j + 0.5) * length;
+      at({.ring = piece.ring,
+          .sector = piece.sector,
+          .part = parts++,
+          .range = range,
+          .bearing = piece.bearing,
+          .length = length,
+          .width = 2.0 * pi * range * piece.share,
+          .share = range / middle * piece.stands_for * piece.share / along},
+         pairs, out);
+    }
+  }
+
+  void at(const Part& piece, PathPairs& pairs, std::vector<Found>& out) const {
     constexpr double faintest = 1e-8;  // of the loudest pair of a place
     const GroundPiece ground{.outward = {std::sin(piece.bearing), std::cos(piece.bearing)},
                              .length = piece.length,
@@ -223,9 +237,9 @@ void for_each_pair(const std::vector<FoundPairs>& all, const Visit& visit) {
       for (const Found& found : part) visit(found);
 }
 
-/// Below which all that is left out of a segment is a hundred-thousandth of its power.
+/// Below which all that is left out of a segment is a millionth of its power.
 std::vector<double> least_power(const std::vector<FoundPairs>& all, double segment) {
-  constexpr double left_out = 1e-5;
+  constexpr double left_out = 1e-6;
   struct Entry {
     double power, share;
   };

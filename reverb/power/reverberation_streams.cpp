@@ -281,15 +281,13 @@ struct GroundAround {
     for (int piece = 0; piece < pieces; ++piece) {
       const int first = piece * sectors / pieces, last = (piece + 1) * sectors / pieces;
       const double bearing = field.grid.first_bearing + 0.5 * (first + last) * width;
-      const double from_source = distance_from_source(middle + range * outward(bearing));
-      // No piece is longer than half its distance from the source.
-      constexpr double most = 16.0;
-      const int around = last - first > 1
-                             ? 1
-                             : static_cast<int>(std::clamp(
-                                   std::ceil(2.0 * range * width / from_source), 1.0, most));
-      const int along =
-          static_cast<int>(std::clamp(std::ceil(2.0 * (outer - inner) / from_source), 1.0, most));
+      const auto cut = [&](double size) {
+        constexpr double most = 64.0;
+        const double largest = field.sheet.largest_piece(
+            middle + range * outward(bearing), field.depth, std::max(size, range * width));
+        return static_cast<int>(std::clamp(std::ceil(size / largest), 1.0, most));
+      };
+      const int around = last - first > 1 ? 1 : cut(range * width), along = cut(outer - inner);
       for (int i = 0; i < along; ++i)
         for (int j = 0; j < around; ++j) {
           const double length = (outer - inner) / along, r = inner + (i + 0.5) * length;
@@ -326,10 +324,6 @@ struct GroundAround {
     const double nearest =
         std::min(range, std::hypot(range - apart, ends.source.position.z() - field.depth));
     return static_cast<int>(std::clamp(narrow * nearest * sectors / (2.0 * pi * range), 1.0, most));
-  }
-  [[nodiscard]] double distance_from_source(const Vec2& place) const noexcept {
-    const Vec3& source = field.sheet.ends().source.position;
-    return std::hypot((place - source.head<2>()).norm(), source.z() - field.depth);
   }
   [[nodiscard]] static Vec2 outward(double bearing) noexcept {
     return {std::sin(bearing), std::cos(bearing)};

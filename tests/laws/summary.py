@@ -3,7 +3,7 @@ import math
 
 import numpy as np
 
-from law import Silent, alike, copied, db, duration, expect, law, loudness, need_leg, norm, one_place, ping, plain, still, warned
+from law import Silent, alike, copied, db, duration, expect, law, loudness, need_leg, norm, one_place, ping, plain, still, warned, water_depth
 from program import Folder, run
 
 
@@ -173,7 +173,7 @@ def levels_hold_the_reverberation(s, p):
     """/levels' row of reverberation is the mean of what is received: over six pings whose scatterers forget.
 
     A record has about as many independent values as pulses fit into what is loud of it; at six standard deviations.
-    Sectors are four, so a value is a sum of few scatterers, whose powers vary like exponentials: factor two in variance.
+    A value may be a sum of few scatterers, whose powers vary like exponentials: factor two in variance.
     """
     r = copied(s)["reverberation"]
     if not r.get("enabled", True):
@@ -193,6 +193,13 @@ def levels_hold_the_reverberation(s, p):
     filled = 700.0 * s["pulse"].get("duration", 0.0)  # less than half of what the pulse is long
     if r.get("ground_spacing", 0.0) > filled and s["pings"]["recording_duration"] < 300 * s["pulse"].get("duration", 0.0):
         r["ground_spacing"] = filled
+    # As many sectors as by default. Places are drawn once for all pings, so that of few and large cells one beside an end,
+    # or in a lobe about the mirrored direction, is all of the mean.
+    r["azimuths"] = 36
+    cell = 0.25 * min(min(z, water_depth(s) - z) for z in (one["position"][2] for one in s["platform"]))
+    if cell < s["pings"]["recording_duration"] * 750.0 / 300:
+        raise Silent("more than 300 rings")
+    r["ground_spacing"] = min(r.get("ground_spacing", cell), cell)
     s["reverberation"] = r
     s["pings"]["count"] = 6
     s["pings"]["interval"] = s["pings"]["recording_duration"] + s["pings"].get("recording_start", 0.0) + 1.0
