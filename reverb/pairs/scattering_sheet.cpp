@@ -494,21 +494,36 @@ double ScatteringSheet::nearest_end(const Vec2& place, double depth) const noexc
   return std::min(distance(ends_.source.position), distance(ends_.receiver.position));
 }
 
+namespace {
+
+/// Whether facets mirror sound in any of the laws.
+bool mirrors(const ScatteringLaws& laws) {
+  const auto one = [](const AnyScattering& law) {
+    return std::holds_alternative<NrlSurface>(law) || std::holds_alternative<EllisCrowe>(law);
+  };
+  return one(laws.usual) || std::any_of(laws.of_kind.begin(), laws.of_kind.end(),
+                                        [&](const auto& kind) { return one(kind.second); });
+}
+
+}  // namespace
+
 double ScatteringSheet::largest_piece(const Vec2& place, double depth, double size) const noexcept {
   constexpr double steepest = 0.5, step = 0.15;  // tilt of facets of a rough sea or floor
+  constexpr double finest = 1.0 / 64.0;          // of a quarter of the distance
   const auto from_place = [&](const Vec3& end) {
     return Vec3(end.x() - place.x(), end.y() - place.y(), end.z() - depth);
   };
   const Vec3 out = from_place(ends_.source.position), back = from_place(ends_.receiver.position);
   const double r1 = std::max(out.norm(), 1e-3), r2 = std::max(back.norm(), 1e-3);
   const double quarter = 0.25 * std::min(r1, r2);
+  if (!mirrors(laws_)) return quarter;
   // Straight lines: half of both directions' sum is a facet's normal, which a way y along the
   // ground tilts by y (1/r₁ + 1/r₂) over the vertical part of the sum.
   const Vec3 normal = out / r1 + back / r2;
   const double upright = std::abs(normal.z()), by_metre = 1.0 / r1 + 1.0 / r2;
   const double tilted = normal.head<2>().norm() - 0.5 * size * by_metre;
   if (tilted > steepest * upright) return quarter;
-  return std::min(quarter, std::max(step * upright / by_metre, 1e-3 * quarter));
+  return std::clamp(step * upright / by_metre, finest * quarter, quarter);
 }
 
 Vec3 ScatteringSheet::arriving(const PathPair& pair) const noexcept {
