@@ -509,21 +509,20 @@ bool mirrors(const ScatteringLaws& laws) {
 
 double ScatteringSheet::largest_piece(const Vec2& place, double depth, double size) const noexcept {
   constexpr double steepest = 0.5, step = 0.15;  // tilt of facets of a rough sea or floor
-  constexpr double finest = 1.0 / 64.0;          // of a quarter of the distance
+  constexpr double finest = 1.0 / 256.0;         // of the distance from the nearer end
+  if (!mirrors(laws_)) return infinity;
   const auto from_place = [&](const Vec3& end) {
     return Vec3(end.x() - place.x(), end.y() - place.y(), end.z() - depth);
   };
   const Vec3 out = from_place(ends_.source.position), back = from_place(ends_.receiver.position);
   const double r1 = std::max(out.norm(), 1e-3), r2 = std::max(back.norm(), 1e-3);
-  const double quarter = 0.25 * std::min(r1, r2);
-  if (!mirrors(laws_)) return quarter;
   // Straight lines: half of both directions' sum is a facet's normal, which a way y along the
   // ground tilts by y (1/r₁ + 1/r₂) over the vertical part of the sum.
   const Vec3 normal = out / r1 + back / r2;
   const double upright = std::abs(normal.z()), by_metre = 1.0 / r1 + 1.0 / r2;
   const double tilted = normal.head<2>().norm() - 0.5 * size * by_metre;
-  if (tilted > steepest * upright) return quarter;
-  return std::clamp(step * upright / by_metre, finest * quarter, quarter);
+  if (tilted > steepest * upright) return infinity;
+  return std::max(step * upright / by_metre, finest * std::min(r1, r2));
 }
 
 Vec3 ScatteringSheet::arriving(const PathPair& pair) const noexcept {

@@ -99,7 +99,8 @@ struct Middles {
   [[nodiscard]] std::uint32_t count() const noexcept {
     return static_cast<std::uint32_t>(sectors.size());
   }
-  /// Adds the pairs of a ring, in pieces no longer or wider than ScatteringSheet::largest_piece().
+  /// Adds the pairs of a ring. No piece is longer than a quarter of its distance from source and
+  /// receiver, nor wider than that distance, nor larger than ScatteringSheet::largest_piece().
   void find(std::uint32_t ring, PathPairs& pairs, std::vector<Found>& out) const {
     const std::uint32_t stride = sectors_for_one(ring), looked_at = count() / stride;
     for (std::uint32_t i = 0; i < count(); i += stride) {
@@ -150,10 +151,11 @@ struct Middles {
                  width = 2.0 * pi * piece.share * middle;
     const Vec2 place =
         field.grid.anchor + middle * Vec2(std::sin(piece.bearing), std::cos(piece.bearing));
-    const auto largest = [&](double size) {
-      return field.sheet.largest_piece(place, field.depth, size);
+    const double nearest = field.sheet.nearest_end(place, field.depth);
+    const auto largest = [&](double size, double share) {
+      return std::min(share * nearest, field.sheet.largest_piece(place, field.depth, size));
     };
-    if (!field.azimuthally_symmetric() && piece.share > narrowest && width > largest(width)) {
+    if (!field.azimuthally_symmetric() && piece.share > narrowest && width > largest(width, 1.0)) {
       Piece half = piece;
       half.share = 0.5 * piece.share;
       for (const double side : {-0.5, 0.5}) {
@@ -164,7 +166,7 @@ struct Middles {
     }
     constexpr double most = 32.0;
     const auto along =
-        static_cast<int>(std::clamp(std::ceil(spacing / largest(spacing)), 1.0, most));
+        static_cast<int>(std::clamp(std::ceil(spacing / largest(spacing, 0.25)), 1.0, most));
     const double length = piece.stands_for * spacing / along;
     for (int j = 0; j < along; ++j) {
       const double range = along == 1 ? middle : piece.ring * spacing + (j + 0.5) * length;
@@ -237,9 +239,9 @@ void for_each_pair(const std::vector<FoundPairs>& all, const Visit& visit) {
       for (const Found& found : part) visit(found);
 }
 
-/// Below which all that is left out of a segment is a millionth of its power.
+/// Below which all that is left out of a segment is a hundred-thousandth of its power.
 std::vector<double> least_power(const std::vector<FoundPairs>& all, double segment) {
-  constexpr double left_out = 1e-6;
+  constexpr double left_out = 1e-5;
   struct Entry {
     double power, share;
   };

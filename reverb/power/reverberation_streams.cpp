@@ -281,10 +281,13 @@ struct GroundAround {
     for (int piece = 0; piece < pieces; ++piece) {
       const int first = piece * sectors / pieces, last = (piece + 1) * sectors / pieces;
       const double bearing = field.grid.first_bearing + 0.5 * (first + last) * width;
+      // No piece is longer than half its distance from the source.
+      const Vec2 place = middle + range * outward(bearing);
+      const double half = 0.5 * distance_from_source(place);
       const auto cut = [&](double size) {
         constexpr double most = 64.0;
-        const double largest = field.sheet.largest_piece(
-            middle + range * outward(bearing), field.depth, std::max(size, range * width));
+        const double largest = std::min(
+            half, field.sheet.largest_piece(place, field.depth, std::max(size, range * width)));
         return static_cast<int>(std::clamp(std::ceil(size / largest), 1.0, most));
       };
       const int around = last - first > 1 ? 1 : cut(range * width), along = cut(outer - inner);
@@ -324,6 +327,10 @@ struct GroundAround {
     const double nearest =
         std::min(range, std::hypot(range - apart, ends.source.position.z() - field.depth));
     return static_cast<int>(std::clamp(narrow * nearest * sectors / (2.0 * pi * range), 1.0, most));
+  }
+  [[nodiscard]] double distance_from_source(const Vec2& place) const noexcept {
+    const Vec3& source = field.sheet.ends().source.position;
+    return std::hypot((place - source.head<2>()).norm(), source.z() - field.depth);
   }
   [[nodiscard]] static Vec2 outward(double bearing) noexcept {
     return {std::sin(bearing), std::cos(bearing)};

@@ -250,7 +250,7 @@ BandError reverberation_error(const Scenario& s, bool wide) {
 // Surface, bottom and volume by all paths, seen through a line's side lobes: 70 frequencies, each
 // with fans, laws and pattern of its own, against one synthesis. Each return's amplitude is
 // interpolated to 10⁻⁴ of its largest, some hundred add at random, as their errors do; but what is
-// left out as inaudible, up to −60 dB of the power on either side, is not the same at all
+// left out as inaudible, up to −50 dB of the power on either side, is not the same at all
 // frequencies: −47 dB. The amplitudes of the centre alone must fail: at the band's half-power
 // points absorption over 5 km is 0.4 dB off, and NRL's law by twice that.
 TEST(WideBand, ReverberationIsThePlainSumAtEveryFrequency) {
