@@ -699,15 +699,20 @@ class VolumeTracer::Run {
                          sign * normal.dot(chord.slope(u)));
       };
     };
-    take(room_used_up(plane(Vec3::UnitZ(), ocean_.surface_depth(), 1.0), 0.0, 1.0), Event::surface,
-         Vec3::UnitZ());
+    const auto meets = [&](const Vec3& normal, double offset, double sign) {
+      // A cubic lies between its control points.
+      const auto room = [&](const Vec3& x) { return sign * (normal.dot(x) - offset); };
+      const bool apart = room(chord.a) > 0.0 && room(chord.a + chord.va / 3.0) > 0.0 &&
+                         room(chord.b - chord.vb / 3.0) > 0.0 && room(chord.b) > 0.0;
+      return apart ? std::nullopt : room_used_up(plane(normal, offset, sign), 0.0, 1.0);
+    };
+    take(meets(Vec3::UnitZ(), ocean_.surface_depth(), 1.0), Event::surface, Vec3::UnitZ());
     for (std::size_t i = 0; i < cell_.walls; ++i) {
       const WaterSlab& slab = cell_.slabs[i];
-      if (slab.low > -infinity &&
-          take(room_used_up(plane(slab.normal, slab.low, 1.0), 0.0, 1.0), Event::wall, slab.normal))
+      if (slab.low > -infinity && take(meets(slab.normal, slab.low, 1.0), Event::wall, slab.normal))
         wall_ = slab.low;
-      if (slab.high < infinity && take(room_used_up(plane(slab.normal, slab.high, -1.0), 0.0, 1.0),
-                                       Event::wall, slab.normal))
+      if (slab.high < infinity &&
+          take(meets(slab.normal, slab.high, -1.0), Event::wall, slab.normal))
         wall_ = slab.high;
     }
     const double bulge = 0.25 * (chord.vb - chord.va).norm();  // off the straight line, at most
