@@ -496,21 +496,35 @@ double ScatteringSheet::nearest_end(const Vec2& place, double depth) const noexc
 
 namespace {
 
-/// Whether facets mirror sound in any of the laws.
-bool mirrors(const ScatteringLaws& laws) {
-  const auto one = [](const AnyScattering& law) {
-    return std::holds_alternative<NrlSurface>(law) || std::holds_alternative<EllisCrowe>(law);
+/// Lobe about the mirrored direction, in tilts of the facets that mirror.
+struct Lobe {
+  double step = infinity;  ///< over which it is nearly even
+  double reach = 0.0;      ///< beyond which it is nothing
+};
+
+/// Lobe of all laws together: of slopes of 0.06 to 0.2 of a sea, or as the floor's law has it.
+Lobe lobe_of(const ScatteringLaws& laws) {
+  Lobe all;
+  const auto add = [&](const AnyScattering& law) {
+    Lobe one;
+    if (std::holds_alternative<NrlSurface>(law)) one = {.step = 0.15, .reach = 0.5};
+    if (const auto* floor = std::get_if<EllisCrowe>(&law)) {
+      const double slope = std::tan(radians(floor->slope_deg));
+      one = {.step = 1.5 * slope, .reach = 5.0 * slope};
+    }
+    all = {.step = std::min(all.step, one.step), .reach = std::max(all.reach, one.reach)};
   };
-  return one(laws.usual) || std::any_of(laws.of_kind.begin(), laws.of_kind.end(),
-                                        [&](const auto& kind) { return one(kind.second); });
+  add(laws.usual);
+  for (const auto& [kind, law] : laws.of_kind) add(law);
+  return all;
 }
 
 }  // namespace
 
 double ScatteringSheet::largest_piece(const Vec2& place, double depth, double size) const noexcept {
-  constexpr double steepest = 0.5, step = 0.15;  // tilt of facets of a rough sea or floor
-  constexpr double finest = 1.0 / 256.0;         // of the distance from the nearer end
-  if (!mirrors(laws_)) return infinity;
+  constexpr double finest = 1.0 / 256.0;  // of the distance from the nearer end
+  const Lobe lobe = lobe_of(laws_);
+  if (!(lobe.reach > 0.0)) return infinity;
   const auto from_place = [&](const Vec3& end) {
     return Vec3(end.x() - place.x(), end.y() - place.y(), end.z() - depth);
   };
@@ -521,8 +535,8 @@ double ScatteringSheet::largest_piece(const Vec2& place, double depth, double si
   const Vec3 normal = out / r1 + back / r2;
   const double upright = std::abs(normal.z()), by_metre = 1.0 / r1 + 1.0 / r2;
   const double tilted = normal.head<2>().norm() - 0.5 * size * by_metre;
-  if (tilted > steepest * upright) return infinity;
-  return std::max(step * upright / by_metre, finest * std::min(r1, r2));
+  if (tilted > lobe.reach * upright) return infinity;
+  return std::max(lobe.step * upright / by_metre, finest * std::min(r1, r2));
 }
 
 Vec3 ScatteringSheet::arriving(const PathPair& pair) const noexcept {

@@ -177,8 +177,8 @@ class ScatteringSheet {
   /// Distance of a place on the sheet from the nearer of source and receiver, depth included [m].
   [[nodiscard]] double nearest_end(const Vec2& place, double depth) const noexcept;
   /// Largest size of a piece of ground whose middle stands for all of it, where it may lie in the
-  /// lobe of facets that mirror one end to the other: what their tilt changes by 0.15 over [m].
-  /// Infinity elsewhere, and under laws without facets. \param size  of the piece [m]
+  /// lobe of facets that mirror one end to the other: what their tilt changes by 1.5 slopes over
+  /// [m]. Infinity elsewhere, and under laws without facets. \param size  of the piece [m]
   [[nodiscard]] double largest_piece(const Vec2& place, double depth, double size) const noexcept;
   /// Adds all that pairs_at() depends on to a key. \return whether the patterns did
   [[nodiscard]] bool add_to(ExactKey& key) const;

@@ -281,23 +281,26 @@ struct GroundAround {
     for (int piece = 0; piece < pieces; ++piece) {
       const int first = piece * sectors / pieces, last = (piece + 1) * sectors / pieces;
       const double bearing = field.grid.first_bearing + 0.5 * (first + last) * width;
+      const double whole = width * (last - first);
       // No piece is longer than half its distance from the source.
       const Vec2 place = middle + range * outward(bearing);
       const double half = 0.5 * distance_from_source(place);
       const auto cut = [&](double size) {
         constexpr double most = 64.0;
         const double largest = std::min(
-            half, field.sheet.largest_piece(place, field.depth, std::max(size, range * width)));
+            half, field.sheet.largest_piece(place, field.depth, std::max(size, range * whole)));
         return static_cast<int>(std::clamp(std::ceil(size / largest), 1.0, most));
       };
-      const int around = last - first > 1 ? 1 : cut(range * width), along = cut(outer - inner);
+      const int parts = cut(range * whole), along = cut(outer - inner);
+      const bool shared = last - first > 1 && parts == 1;
+      const int around = shared ? 1 : std::max(last - first, parts);
       for (int i = 0; i < along; ++i)
         for (int j = 0; j < around; ++j) {
           const double length = (outer - inner) / along, r = inner + (i + 0.5) * length;
-          const double towards = bearing + ((j + 0.5) / around - 0.5) * width;
-          const double wide = r * width * (last - first) / around;
+          const double towards = bearing + ((j + 0.5) / around - 0.5) * whole;
+          const double wide = r * whole / around;
           places.clear();
-          for (int sector = first; sector < last && last - first > 1; ++sector)
+          for (int sector = first; sector < last && shared; ++sector)
             places.push_back(middle +
                              r * outward(field.grid.first_bearing + (sector + 0.5) * width));
           const auto number = static_cast<std::uint64_t>((piece * along + i) * around + j);

@@ -7,7 +7,7 @@
 namespace asdic::detail {
 namespace {
 
-// What is kept is what is drawn, in whatever order and for whatever count it was asked for.
+// Sums kept equal those drawn, whatever the order and the count that were asked for before.
 TEST(SeaDraws, KeptSumsAreThoseDrawn) {
   SeaDraws draws(3);
   for (const int count : {5, 7, 5, 1, 7})

@@ -253,7 +253,7 @@ TEST(ForwardScatter, KinksJoinTheEnds) {
                   1e-9 * length);
       EXPECT_NEAR(d1 / std::tan(in) + d2 / std::tan(out), length * std::cos(grazing),
                   1e-9 * length);
-      // Of small slopes both laws are one.
+      // Both laws agree on small slopes.
       if (std::abs(kink.down) > 1e-3 &&
           std::abs(kink.along_way - k * (std::cos(out) - std::cos(in))) < 1e-9 * k)
         ++one_by_one;

@@ -441,8 +441,8 @@ TEST(EnoughBounces, EndWherePathsMultiplyAndSaySo) {
   EXPECT_GT(asked.left_out_db, tolerable_db);
 }
 
-// Where at some time all there is has more bounces than the numbers asked for, nothing worse can be
-// found, and the first try is the last.
+// Nothing worse can be found once all there is at some time has more bounces than the numbers asked
+// for, so the first try is the last.
 TEST(EnoughBounces, EndWhereNumbersLackAllOfIt) {
   int looked_to = 0;
   const auto look = [&](const PathLimits& limits, ReceivedBounces& received) {

@@ -1,6 +1,7 @@
 // The level of a bistatic pair, and of a fan whatever its rays.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -157,38 +158,45 @@ TEST_P(BistaticReverberation, ChapmanHarrisSurfaceIsTheGroundIntegral) {
 // 2 cos θ_in cos θ_out cos φ)/(sin θ_in + sin θ_out)². The first of it comes out of a lobe that is
 // much narrower than one of eight sectors. Sectors taken as a whole are 4.5 dB off.
 TEST_P(BistaticReverberation, FacetsMirrorIntoANarrowLobe) {
-  Scenario s = pair();
-  s.reverberation.surface_scatters = false;
-  s.reverberation.azimuths = 8;
-  s.reverberation.bottom = EllisCrowe{.mu_db = -40.0, .nu_db = 0.0, .slope_deg = 4.0};
-  s.reverberation.bottom_field.statistics.coherence_time = 0.0;
-  const auto law = [](double in, double out, double cosine) {
-    const double slope = std::tan(4.0 * pi / 180.0), sines = std::sin(in) + std::sin(out);
-    const double tilt = (std::pow(std::cos(in), 2) + std::pow(std::cos(out), 2) -
-                         2.0 * std::cos(in) * std::cos(out) * cosine) /
-                        (sines * sines);
-    return 1e-4 * std::sin(in) * std::sin(out) +
-           std::pow(1.0 + tilt, 2) * std::exp(-tilt / (2.0 * slope * slope));
-  };
-  std::array<double, 6> early{};
-  for (std::size_t i = 0; i < early.size(); ++i) early[i] = 3.52 + 0.03 * double(i);
-  const auto expected = plane(3000.0, early, law);
-  const Sea sea(s);
-  const PingReverberation ping = sea.ping(1);
-  for (std::size_t i = 0; i < early.size(); ++i)
-    EXPECT_NEAR(ping.expected_db(early[i]), 220.0 + db_from_power(expected[i]), 0.3) << early[i];
-  // One by one, few places make the lobe.
-  if (GetParam() != ScattererSynthesis::streams) return;
-  constexpr int pings = 30;
-  double mean = 0.0;
-  for (std::uint32_t n = 1; n <= pings; ++n) {
-    const Baseband received = sea.receive(n);
+  for (const double slope_deg : {1.0, 4.0}) {
+    SCOPED_TRACE(slope_deg);
+    Scenario s = pair();
+    s.reverberation.surface_scatters = false;
+    s.reverberation.azimuths = 8;
+    s.reverberation.bottom = EllisCrowe{.mu_db = -40.0, .nu_db = 0.0, .slope_deg = slope_deg};
+    s.reverberation.bottom_field.statistics.coherence_time = 0.0;
+    const auto law = [slope_deg](double in, double out, double cosine) {
+      const double slope = std::tan(slope_deg * pi / 180.0), sines = std::sin(in) + std::sin(out);
+      const double tilt = (std::pow(std::cos(in), 2) + std::pow(std::cos(out), 2) -
+                           2.0 * std::cos(in) * std::cos(out) * cosine) /
+                          (sines * sines);
+      return 1e-4 * std::sin(in) * std::sin(out) +
+             std::pow(1.0 + tilt, 2) * std::exp(-tilt / (2.0 * slope * slope));
+    };
+    std::array<double, 6> early{};
+    for (std::size_t i = 0; i < early.size(); ++i) early[i] = 3.52 + 0.03 * double(i);
+    const auto expected = plane(3000.0, early, law);
+    const Sea sea(s);
+    const PingReverberation ping = sea.ping(1);
+    // Later only the edge of the pulse is left, whose delays differ within a piece.
+    const double faintest = 0.01 * *std::max_element(expected.begin(), expected.end());
     for (std::size_t i = 0; i < early.size(); ++i)
-      for (std::size_t phone = 0; phone < 4; ++phone)
-        mean += std::norm(at(received, phone, early[i])) / expected[i] / (4.0 * pings * 6.0);
+      if (expected[i] > faintest)
+        EXPECT_NEAR(ping.expected_db(early[i]), 220.0 + db_from_power(expected[i]), 0.3)
+            << early[i];
+    // One by one, few places make the lobe.
+    if (GetParam() != ScattererSynthesis::streams) continue;
+    constexpr int pings = 30;
+    double mean = 0.0;
+    for (std::uint32_t n = 1; n <= pings; ++n) {
+      const Baseband received = sea.receive(n);
+      for (std::size_t i = 0; i < early.size(); ++i)
+        for (std::size_t phone = 0; phone < 4; ++phone)
+          mean += std::norm(at(received, phone, early[i])) / expected[i] / (4.0 * pings * 6.0);
+    }
+    // Moments a quarter of a pulse apart: two values of each phone.
+    EXPECT_NEAR(mean, 1.0, 4.9 / std::sqrt(2.0 * pings * 4.0));
   }
-  // Moments a quarter of a pulse apart: two values of each phone.
-  EXPECT_NEAR(mean, 1.0, 4.9 / std::sqrt(2.0 * pings * 4.0));
 }
 
 /// The coherence of what two receivers on platforms of their own receive, from 6.3 to 12.1 s of 30
