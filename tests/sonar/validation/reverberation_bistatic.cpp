@@ -181,9 +181,10 @@ TEST_P(BistaticReverberation, FacetsMirrorIntoANarrowLobe) {
     // Later only the edge of the pulse is left, whose delays differ within a piece.
     const double faintest = 0.01 * *std::max_element(expected.begin(), expected.end());
     for (std::size_t i = 0; i < early.size(); ++i)
-      if (expected[i] > faintest)
+      if (expected[i] > faintest) {
         EXPECT_NEAR(ping.expected_db(early[i]), 220.0 + db_from_power(expected[i]), 0.3)
             << early[i];
+      }
     // One by one, few places make the lobe.
     if (GetParam() != ScattererSynthesis::streams) continue;
     constexpr int pings = 30;
