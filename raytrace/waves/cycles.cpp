@@ -157,6 +157,8 @@ constexpr double least_change = 1e-3;     // of the whole, below which a ray sta
 constexpr double least_weight = 1e-3;     // of a ray in the window of wavenumbers
 constexpr double resolved = 0.99;         // of a wavenumber that is summed history by history
 constexpr double of_a_wave = 0.1;         // what its amplitude may be off by at most
+// Of ends off a wall that waves skim, in Airy's lengths, and of the range along it (k·2L²).
+constexpr double furthest_off = 1.0, furthest_along = 1.0;
 
 /// Phase factor of a ray's delay.
 Complex turned(const Arrival& ray, double frequency) {
@@ -231,6 +233,51 @@ struct FoundLeg {
   }
 };
 
+/// Rays that skim one wall where the range is too short for the window to hold such flat waves. The
+/// water's gradient bends rays there, but not waves whose Airy length is far more than the ends are
+/// off the wall: within the range that a ray would need to leave it by that length, they are those
+/// of water at one speed, a direct wave and its image.   \param left_out  [found] by the window
+WaveGroup skimming_group(const FoundLeg& leg, bool surface, const std::vector<double>& left_out) {
+  const Boundary& wall = surface ? leg.ocean.surface : leg.ocean.bottom;
+  const SoundSpeed there = leg.ocean.water.at(wall.depth);
+  const double k = leg.omega() / there.c;
+  const double length = std::cbrt(there.c / (2.0 * k * k * std::abs(there.dc_dz)));
+  const double a = std::abs(leg.source_depth - wall.depth),
+               b = std::abs(leg.receiver_depth - wall.depth);
+  const double off = std::max(a, b) / length, along = leg.range / (2.0 * k * length * length);
+  const double bends = std::max(off / furthest_off, along / furthest_along);
+  const double x = std::clamp(2.0 * (1.0 - bends), 0.0, 1.0), valid = x * x * (3.0 - 2.0 * x);
+  const int most = surface ? leg.limits.max_surface_bounces : leg.limits.max_bottom_bounces;
+  WaveGroup group;
+  if (!(valid > 0.0) || most == 0) return group;
+  double energy = 0.0, outside = 0.0;
+  for (std::size_t i = 0; i < leg.found.size(); ++i) {
+    const Arrival& ray = leg.found[i];
+    if ((surface ? ray.bottom_bounces : ray.surface_bounces) > 0 || !(left_out[i] > least_weight))
+      continue;
+    group.add(i, left_out[i] * valid, pressure(ray, leg.frequency));
+    energy += std::norm(ray.amplitude);
+    outside += left_out[i] * std::norm(ray.amplitude);
+  }
+  if (group.rays.empty()) return group;
+  const WaveColumn column(leg.ocean, leg.frequency, leg.source_depth,
+                          std::span(&leg.receiver_depth, 1));
+  const Complex wavenumber =
+      0.5 * (std::sqrt(column.at_source().k2) + std::sqrt(column.at_receiver().k2));
+  const auto wave = [&](double height) {
+    const double r = std::hypot(leg.range, height);
+    return std::exp(Complex(0.0, -1.0) * wavenumber * r) / r;
+  };
+  const double image = std::hypot(leg.range, a + b);
+  const Complex reflected = reflection_at(wall,
+                                          {.speed = there.c,
+                                           .density = leg.ocean.water_density.at(wall.depth),
+                                           .frequency = leg.frequency},
+                                          leg.omega(), k * leg.range / image, k * (a + b) / image);
+  group.lacking += valid * outside / energy * (wave(a - b) + reflected * wave(a + b));
+  return group;
+}
+
 /// Groups by cycles.
 std::vector<WaveGroup> cycle_groups(const FoundLeg& leg, const CyclesKeeper& keeper) {
   const auto& [ocean, source_depth, receiver_depth, range, frequency, limits, found] = leg;
@@ -264,7 +311,15 @@ std::vector<WaveGroup> cycle_groups(const FoundLeg& leg, const CyclesKeeper& kee
     if (weights.back() == 0.0) continue;
     last = std::max(last, term_of(ray));
   }
-  if (last < 0) return {};
+  std::vector<double> left_out;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const bool judged =
+        found[i].kind != ArrivalKind::diffracted && std::norm(found[i].amplitude) > 0.0;
+    left_out.push_back(judged ? 1.0 - weights[i] : 0.0);
+  }
+  std::vector<WaveGroup> all{skimming_group(leg, true, left_out),
+                             skimming_group(leg, false, left_out)};
+  if (last < 0) return all;
   const int flat_cycles = plain->flat_cycles(range);
   const std::size_t count = std::size_t(std::max(last, flat_cycles)) + 2;
   std::map<std::pair<bool, bool>, std::vector<Complex>> known;
@@ -311,7 +366,7 @@ std::vector<WaveGroup> cycle_groups(const FoundLeg& leg, const CyclesKeeper& kee
   const WaveGroup flat = group_of(count, flat_cycles);
   hand_over(flat, flat_cycles);
   for (const auto& [term, here] : groups) hand_over(here, term);
-  std::vector<WaveGroup> all{flat};
+  all.push_back(flat);
   for (auto& [term, here] : groups) all.push_back(std::move(here));
   return all;
 }

@@ -119,5 +119,58 @@ TEST(FlatWaves, AboutTheAxisOfASpline) {
   }
 }
 
+// Ends a metre below the surface of a surface duct, at most 30 wavelengths apart. Rays that skim
+// the surface are bent by the duct, but waves as long as these are not: direct wave and image
+// cancel. 2 dB allow for the duct. The sum was 25 to 75 dB higher.
+TEST(FlatWaves, SkimmingTheSurfaceOfADuctCancelTheirImage) {
+  Environment ocean{.water = SoundSpeedProfile::table(std::vector{0.0, 124.0, 1655.0},
+                                                      std::vector{1495.0, 1499.482, 1520.0},
+                                                      Interpolation::c_linear)};
+  ocean.bottom = {
+      .depth = 1655.0,
+      .material = FluidHalfSpace{.speed = 1520.0, .density = ocean.water_density.at(1655.0)}};
+  for (const double f : {29.0, 60.0})
+    for (const double range : {150.0, 300.0, 600.0})
+      for (const double receiver : {1.0, 1.001, 5.0}) {
+        const Energy paths = energy_of(ocean, f, 1.0, receiver, range, 1);
+        const double k = 2.0 * pi * f / 1495.0;
+        const auto wave = [&](double height) {
+          const double r = std::hypot(range, height);
+          return std::polar(1.0 / r, -k * r);
+        };
+        const std::complex<double> image = wave(receiver - 1.0) - wave(receiver + 1.0);
+        EXPECT_LT(std::abs(paths.sum - image), 0.003 / range)
+            << f << " Hz, " << range << " m, " << receiver << " m";
+      }
+}
+
+// A floor given as a table of its own reflection, where water is thinner than a wavelength. Waves
+// are summed above the real axis, where a table is not known; with its coefficient at the real
+// angle their sum was up to 30 dB higher.
+TEST(FlatWaves, OverATabulatedFloorAreThoseOverTheFloor) {
+  Environment ocean{.water = SoundSpeedProfile::munk({.axis_depth = 18.08, .scale_depth = 18.08})};
+  const FluidHalfSpace floor{.speed = 1600.0, .density = 1500.0};
+  ocean.bottom = {.depth = 60.26, .material = floor};
+  const WaterAtBoundary water{.speed = ocean.water.at(60.26).c,
+                              .density = ocean.water_density.at(60.26)};
+  ReflectionTable table;
+  for (int row = 0; row <= 360; ++row) {
+    table.grazing.push_back(radians(0.25 * row));
+    const auto r = reflection_coefficient(floor, table.grazing.back(), water);
+    table.magnitude.push_back(std::abs(r));
+    table.phase.push_back(row == 0 ? pi : std::arg(r));
+  }
+  Environment tabulated = ocean;
+  tabulated.bottom.material = table;
+  for (const double f : {21.0, 60.0})
+    for (const double range : {600.0, 1173.0, 2000.0}) {
+      const Energy there = energy_of(ocean, f, 59.26, 59.26, range, 3),
+                   by_table = energy_of(tabulated, f, 59.26, 59.26, range, 3);
+      EXPECT_NEAR(db(by_table.all), db(there.all), 1.0) << f << " Hz, " << range << " m";
+      EXPECT_LT(std::abs(by_table.sum - there.sum), 0.2 * std::sqrt(there.all))
+          << f << " Hz, " << range << " m";
+    }
+}
+
 }  // namespace
 }  // namespace asdic::detail
