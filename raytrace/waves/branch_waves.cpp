@@ -15,8 +15,7 @@ using Complex = std::complex<double>;
 
 constexpr std::array steepest_cosines = {0.9, 0.8, 0.65, 0.5};  // at the source, of windows
 constexpr double branch_edge_radians = 100.0;  // that the window's edges hold at the furthest range
-constexpr double branch_period = 1.5, branch_suppression = 9.21;  // as in water_window()
-constexpr double noticed_radians = 1.0;  // at the furthest range, of a slope beside an end
+constexpr double noticed_radians = 1.0;        // at the furthest range, of a slope beside an end
 constexpr double one_at_an_end = 2.0,
                  two_at_an_end = 6.0;      // Airy's argument at an end: up and down are two
 constexpr double least_summed = 1e-8;      // of a wavenumber that is summed
@@ -26,10 +25,10 @@ constexpr double faintest_counted = 1e-3;  // of the loudest ray, whose angle wa
 double fade_in(double x) { return 0.5 * std::erfc(-4.0 * (2.0 * x - 1.0)); }
 
 /// No wavenumbers where its edges do not fit.
-WaterWindow branch_window(double steepest, double flattest, double range) {
+WaterWindow branch_window(double steepest, double flattest, double range, double period) {
   WaterWindow w;
-  w.spacing = 2.0 * pi / (branch_period * range);
-  w.offset = branch_suppression / (branch_period * range);
+  w.spacing = 2.0 * pi / period;
+  w.offset = suppressed_by_a_period / period;
   w.low_width = w.high_width = branch_edge_radians / range;
   w.begin = steepest - w.low_width;
   w.end = flattest + w.high_width;
@@ -54,7 +53,8 @@ double BranchWaves::End::airy(double wavenumber) const noexcept {
 
 BranchWaves::BranchWaves(const Environment& ocean, const BranchNeed& need) {
   const WaveColumn column(ocean, need.frequency, need.upper, std::span(&need.lower, 1));
-  window_ = branch_window(need.steepest, column.largest_wavenumber(), need.furthest);
+  window_ = branch_window(need.steepest, column.largest_wavenumber(), need.furthest,
+                          column.ranges_of_a_period() * need.furthest);
   k2_ = {column.at_source(), column.at_receiver()};
   for (std::size_t i = 0; i < ends_.size(); ++i) {
     // Phase that Airy's length adds over the whole way [rad].

@@ -16,7 +16,6 @@ constexpr double least_returned = 1e-3;  // of a wave's pressure, by the water i
 // What the edges of the window hold at the furthest range, at least: 80 dB off what lies outside,
 // where g falls off as slowly as between depths less than a wavelength apart.
 constexpr double edge_radians = 200.0;
-constexpr double ranges_of_a_period = 1.5, suppressed = 9.21;
 
 /// The steepest |dc/dz| [1/s].
 double steepest_gradient(const Environment& ocean) {
@@ -77,8 +76,9 @@ WaterWindow water_window(const WaveColumn& column, double angle, double range) {
   const double slow = column.largest_wavenumber(), fast = column.smallest_wavenumber();
   const double flat = fast * std::cos(angle), steep = fast * std::cos(1.5 * angle);
   WaterWindow w;
-  w.spacing = 2.0 * pi / (ranges_of_a_period * range);
-  w.offset = suppressed / (ranges_of_a_period * range);
+  const double period = column.ranges_of_a_period() * range;
+  w.spacing = 2.0 * pi / period;
+  w.offset = suppressed_by_a_period / period;
   w.low_width = std::max(flat - steep, edge_radians / range);
   w.high_width = std::max(0.003 * slow, edge_radians / range);
   w.begin = std::max(flat - w.low_width, 0.02 * fast);

@@ -57,14 +57,26 @@ struct ReflectionAt {
   Complex operator()(const LayeredFloor& floor) const {
     return layered_reflection(floor, grazing.cosine, water);
   }
-  Complex operator()(const ReflectionTable& /*table*/) const { return at_real_angle(); }
-  Complex operator()(const ReflectionCurves& /*curves*/) const { return at_real_angle(); }
+  Complex operator()(const ReflectionTable& /*table*/) const { return continued(); }
+  Complex operator()(const ReflectionCurves& /*curves*/) const { return continued(); }
 
  private:
-  /// Tables know real angles only.
-  Complex at_real_angle() const {
-    const double angle = std::acos(std::clamp(grazing.cosine.real(), 0.0, 1.0));
-    return reflection_coefficient(boundary.material, angle, water);
+  /// What is tabulated at real angles θ, where it is R = m·e^{iφ} with lines m and φ, at complex
+  /// ones: (m + m′·i·Im θ)·e^{iφ − φ′·Im θ}. Integrals above the real axis grow by up to e⁶ with
+  /// range, and whatever is not analytic in R with them.
+  Complex continued() const {
+    constexpr double step = 1e-6;        // [rad]
+    constexpr double most_growth = 1.0;  // of a wave along the boundary, whose angle is imaginary
+    const Complex angle =
+        Complex(0.0, -1.0) * std::log(grazing.cosine + Complex(0.0, 1.0) * grazing.sine);
+    const double real = std::clamp(angle.real(), 0.0, 0.5 * pi - step), imaginary = angle.imag();
+    const Complex here = reflection_coefficient(boundary.material, real, water),
+                  next = reflection_coefficient(boundary.material, real + step, water);
+    if (here == 0.0 || next == 0.0) return here;
+    const double size = std::abs(here), slope = (std::abs(next) - size) / step,
+                 turn = std::arg(next / here) / step;
+    return here * Complex(1.0, slope / size * imaginary) *
+           std::exp(std::min(-turn * imaginary, most_growth));
   }
 };
 
@@ -85,6 +97,18 @@ Complex reflection_at(const Boundary& boundary, const WaterAtBoundary& water, do
   const Complex r = std::visit(behind, boundary.material);
   if (boundary.roughness.smooth()) return r;
   return r * coherent_reflection(boundary.roughness, std::abs((w / k).real()), k);
+}
+
+double WaveColumn::ranges_of_a_period() const noexcept {
+  const auto tabulated = [](const Boundary& boundary) {
+    const auto* table = std::get_if<ReflectionTable>(&boundary.material);
+    return std::holds_alternative<ReflectionCurves>(boundary.material) ||
+           (table &&
+            (std::ranges::count(table->magnitude, table->magnitude.front()) !=
+                 std::ssize(table->magnitude) ||
+             std::ranges::count(table->phase, table->phase.front()) != std::ssize(table->phase)));
+  };
+  return tabulated(environment_.surface) || tabulated(environment_.bottom) ? 6.0 : 1.5;
 }
 
 double WaveColumn::slowest_wavenumber() const {

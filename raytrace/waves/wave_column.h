@@ -9,6 +9,9 @@
 
 namespace asdic::detail {
 
+/// What a sum over wavenumbers takes off the field one period further out: 80 dB [Np].
+inline constexpr double suppressed_by_a_period = 9.21;
+
 /// A layered ocean as its depth-separated wave equation sees it, cut for one source and a number of
 /// receivers:
 ///
@@ -81,6 +84,9 @@ class WaveColumn {
   }
 
   [[nodiscard]] std::size_t layers() const noexcept { return layers_.size(); }
+  /// The period that a sum over wavenumbers may have, over its furthest range. Nearer the real axis
+  /// where a reflection coefficient is tabulated, because it is not analytic at the rows.
+  [[nodiscard]] double ranges_of_a_period() const noexcept;
   /// ω over the lowest and the highest speed [1/m].
   [[nodiscard]] double largest_wavenumber() const noexcept { return largest_; }
   [[nodiscard]] double smallest_wavenumber() const noexcept { return smallest_; }

@@ -16,8 +16,6 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double suppression = 9.21;     // ln of what a period takes off: 80 dB
-constexpr double far_period = 1.5;       // of the largest range
 constexpr double near_period = 6.0;      // of the largest range nearby: the sum's start is square
 constexpr double near_share = 0.25;      // of the depth of the water
 constexpr double near_argument = 640.0;  // or k·r: 60 over the steep launches' share of k
@@ -85,9 +83,9 @@ WaveIntegral::Contour WaveIntegral::far_contour() const {
   const double farthest = *std::max_element(ranges_.begin(), ranges_.end());
   const double k = column_.slowest_wavenumber(), steep = column_.smallest_wavenumber();
   Contour c;
-  c.period = far_period * farthest;
+  c.period = column_.ranges_of_a_period() * farthest;
   c.spacing = 2.0 * pi / c.period;
-  c.offset = suppression / c.period;
+  c.offset = suppressed_by_a_period / c.period;
   c.steepest = steep_cosine[0] * steep;
   c.steep_width = (steep_cosine[1] - steep_cosine[0]) * steep;
   c.flattest = k * 1.0005;
@@ -107,7 +105,7 @@ WaveIntegral::Contour WaveIntegral::near_contour() const {
   Contour c;
   c.period = near_period * std::max(0.5 * depth_, farthest);
   c.spacing = 2.0 * pi / c.period;
-  c.offset = suppression / c.period;
+  c.offset = suppressed_by_a_period / c.period;
   c.flattest = k;
   c.flat_width = std::clamp(60.0 / std::max(nearest, 1e-3), 0.1 * k, 2.0 * k);
   c.count = std::size_t((c.flattest + c.flat_width) / c.spacing) + 1;
