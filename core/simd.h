@@ -279,8 +279,8 @@ inline WideFloats logarithm(const WideFloats& x) noexcept {
 // lane.
 
 /// 1/k!
-inline constexpr std::array<double, 14> per_factorial = [] {
-  std::array<double, 14> value{1.0};
+inline constexpr std::array<double, 22> per_factorial = [] {
+  std::array<double, 22> value{1.0};
   for (std::size_t k = 1; k < value.size(); ++k) value[k] = value[k - 1] / double(k);
   return value;
 }();
@@ -303,6 +303,28 @@ inline SimdDoubles exponential(const SimdDoubles& x) noexcept {
   const SimdBits bits =
       __builtin_bit_cast(SimdBits, e) + (__builtin_bit_cast(SimdBits, shifted) << 52);
   return __builtin_bit_cast(SimdDoubles, bits);
+}
+
+/// cos x and sin x for |x| < 10⁶: of x − nπ within ±π/2, where the terms left out are 1e-18, with
+/// the sign of (−1)ⁿ.
+inline void cos_sin(const SimdDoubles& x, SimdDoubles& cosine, SimdDoubles& sine) noexcept {
+  constexpr double pi_high = 3.14159265346825122834,
+                   pi_middle = 1.21542010126079319532e-10,  // both with 33 bits
+      pi_low = 4.04453249742233291160e-21;
+  constexpr double magic = 6755399441055744.0;  // 1.5·2⁵²: its last bits hold n
+  const SimdDoubles shifted = x * (1.0 / pi) + magic, n = shifted - magic;
+  const SimdDoubles r = ((x - n * pi_high) - n * pi_middle) - n * pi_low, r2 = -r * r;
+  SimdDoubles even = per_factorial[20], odd = per_factorial[21];
+  for (std::size_t k = 20; k > 0; k -= 2) {
+    even = even * r2 + per_factorial[k - 2];
+    odd = odd * r2 + per_factorial[k - 1];
+  }
+  const SimdBits sign = __builtin_bit_cast(SimdBits, shifted) << 63;
+  const auto signed_by_n = [&](const SimdDoubles& value) {
+    return __builtin_bit_cast(SimdDoubles, __builtin_bit_cast(SimdBits, value) ^ sign);
+  };
+  cosine = signed_by_n(even);
+  sine = signed_by_n(r * odd);
 }
 
 /// ln x of positive x: x = 2ⁿ·m with m within √½..√2, ln m = 2·atanh[(m − 1)/(m + 1)], where 11

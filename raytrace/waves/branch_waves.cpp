@@ -68,9 +68,14 @@ BranchWaves::BranchWaves(const Environment& ocean, const BranchNeed& need) {
   constexpr std::size_t piece = 16;
   in_parallel_chunks(window_.count, piece, [&](std::size_t begin, std::size_t end) {
     stop_point();
-    for (std::size_t j = begin; j < end; ++j) {
-      kernels_[j] = kernel(column, window_.at(j));
-      for (Complex& part : kernels_[j].first) part *= window_.factor(window_.at(j));
+    for (std::size_t j = begin; j < end; j += DepthWaves::count) {
+      const Wavenumbers xi(std::min(DepthWaves::count, end - j),
+                           [&](std::size_t lane) { return window_.at(j + lane); });
+      const auto solutions = column.solutions(xi);
+      for (std::size_t l = 0; l < xi.used; ++l) {
+        Kernel& k = kernels_[j + l] = kernel(solutions[l], xi.xi[l]);
+        for (Complex& part : k.first) part *= window_.factor(xi.xi[l]);
+      }
     }
   });
 }
@@ -83,10 +88,9 @@ double BranchWaves::share(double wavenumber) const noexcept {
   return window_.weight(wavenumber) * ends_[0].resolved(wavenumber) * ends_[1].resolved(wavenumber);
 }
 
-BranchWaves::Kernel BranchWaves::kernel(const WaveColumn& column, Complex xi) const noexcept {
+BranchWaves::Kernel BranchWaves::kernel(const WaveColumn::AtDepths& at, Complex xi) const noexcept {
   const double share = ends_[0].resolved(xi.real()) * ends_[1].resolved(xi.real());
   if (share < least_summed) return {};
-  const WaveColumn::AtDepths at = column.solutions(xi);
   const DepthWave &u = at.source.above, &v = at.source.below, &v_lower = at.receiver.below;
   const auto travelling = [&](std::size_t end) {
     return travelling_waves(k2_[end].k2 - xi * xi, ends_[end].noticed ? ends_[end].slope : 0.0);

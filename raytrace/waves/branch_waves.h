@@ -76,7 +76,8 @@ class BranchWaves {
     std::array<std::complex<double>, 4> first;
     std::complex<double> cycle;
   };
-  [[nodiscard]] Kernel kernel(const WaveColumn& column, std::complex<double> xi) const noexcept;
+  [[nodiscard]] Kernel kernel(const WaveColumn::AtDepths& at,
+                              std::complex<double> xi) const noexcept;
 
   WaterWindow window_;
   std::array<WaveColumn::Squared, 2> k2_;

@@ -52,11 +52,16 @@ CycleWaves::CycleWaves(const Environment& ocean, double frequency, double source
   constexpr std::size_t piece = 16;
   kernels_.resize(window_.count);
   in_parallel_chunks(window_.count, piece, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t j = begin; j < end; ++j) {
+    for (std::size_t j = begin; j < end; j += DepthWaves::count) {
       stop_point();
-      const Complex factor = window_.factor(window_.at(j));
-      Kernel& k = kernels_[j] = kernel(column, window_.at(j));
-      for (Complex* part : {&k.first, &k.next, &k.flat}) *part *= factor;
+      const Wavenumbers xi(std::min(DepthWaves::count, end - j),
+                           [&](std::size_t lane) { return window_.at(j + lane); });
+      const auto solutions = column.solutions(xi);
+      for (std::size_t l = 0; l < xi.used; ++l) {
+        const Complex factor = window_.factor(xi.xi[l]);
+        Kernel& k = kernels_[j + l] = kernel(solutions[l], xi.xi[l]);
+        for (Complex* part : {&k.first, &k.next, &k.flat}) *part *= factor;
+      }
     }
   });
 }
@@ -84,8 +89,7 @@ int CycleWaves::term_of(const Branch& branch) const noexcept {
                           : branch.bottom_vertices() - int(!branch.starts_up);
 }
 
-CycleWaves::Kernel CycleWaves::kernel(const WaveColumn& column, Complex xi) const noexcept {
-  const WaveColumn::AtDepths at = column.solutions(xi);
+CycleWaves::Kernel CycleWaves::kernel(const WaveColumn::AtDepths& at, Complex xi) const noexcept {
   const WaveColumn::Solutions &over = source_is_upper_ ? at.source : at.receiver,
                               &under = source_is_upper_ ? at.receiver : at.source;
   const DepthWave &u = at.slowest.above, &v = at.slowest.below;

@@ -54,7 +54,8 @@ class CycleWaves {
   struct Kernel {
     std::complex<double> first, next, cycle, flat;
   };
-  [[nodiscard]] Kernel kernel(const WaveColumn& column, std::complex<double> xi) const noexcept;
+  [[nodiscard]] Kernel kernel(const WaveColumn::AtDepths& at,
+                              std::complex<double> xi) const noexcept;
 
   /// Where rays that are horizontal at an end turn: both ends between two turns, above and below;
   /// above both ends; below both ends.

@@ -1,35 +1,15 @@
 #include "raytrace/waves/depth_wave.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "raytrace/waves/airy.h"
+#include "raytrace/waves/airy_series.h"
 
 namespace asdic::detail {
 namespace {
 
 using Complex = std::complex<double>;
-
-constexpr double least_eta = 10.0;  // |⅔q^{3/2}/q′| from which the series for large arguments serve
-constexpr int airy_terms = 9;
-constexpr int power_terms = 26;
-constexpr double power_phase = 3.0;  // |√q|·step of a power series
-
-/// The coefficients of Airy's functions and of their derivatives for large arguments, DLMF 9.7.2.
-struct AirySeries {
-  std::array<double, airy_terms> c{}, d{};
-  constexpr AirySeries() {
-    c[0] = d[0] = 1.0;
-    for (int k = 1; k < airy_terms; ++k) {
-      const double n = k;
-      c[std::size_t(k)] =
-          c[std::size_t(k - 1)] * (6 * n - 5) * (6 * n - 3) * (6 * n - 1) / (216 * n * (2 * n - 1));
-      d[std::size_t(k)] = -c[std::size_t(k)] * (6 * n + 1) / (6 * n - 1);
-    }
-  }
-};
-constexpr AirySeries for_large;
 
 /// Of the two waves q^{−1/4}·e^{∓iη}, what their amplitudes and those of their derivatives are
 /// multiplied with at one place.

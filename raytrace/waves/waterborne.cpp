@@ -37,17 +37,21 @@ std::shared_ptr<EdgePair> edge_pair(const Environment& ocean, const WaveColumn& 
   pair->waves.resize(pair->window.count);
   constexpr std::size_t piece = 16;
   in_parallel_chunks(pair->window.count, piece, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t j = begin; j < end; ++j) {
+    for (std::size_t j = begin; j < end; j += DepthWaves::count) {
       stop_point();
-      const Complex xi = pair->window.at(j);
-      DepthWave above = column.above(xi, upper), below = column.below(xi, lower);
-      const DepthWave kept = below;
-      column.ascend(below, xi, lower, column.edge(upper));
-      // g = −2uv/W, W = uv′ − u′v where both are known; `below` has its derivative upwards.
-      const Complex scale = -2.0 / (-above.u * below.du - above.du * below.u);
-      // u's growth is in W too, so it cancels, and of v's what it grew on the way up is left.
-      pair->waves[j] = {{above.u * scale, above.du * scale, 0.0},
-                        {kept.u, kept.du, kept.growth - below.growth}};
+      const Wavenumbers xi(std::min(DepthWaves::count, end - j),
+                           [&](std::size_t lane) { return pair->window.at(j + lane); });
+      const DepthWaves from_above = column.above(xi, upper), kept = column.below(xi, lower);
+      DepthWaves from_below = kept;
+      column.ascend(from_below, xi, lower, column.edge(upper));
+      for (std::size_t l = 0; l < xi.used; ++l) {
+        const DepthWave above = from_above.get(l), below = from_below.get(l), there = kept.get(l);
+        // g = −2uv/W, W = uv′ − u′v where both are known; `below` has its derivative upwards.
+        const Complex scale = -2.0 / (-above.u * below.du - above.du * below.u);
+        // u's growth is in W too, so it cancels, and of v's what it grew on the way up is left.
+        pair->waves[j + l] = {{above.u * scale, above.du * scale, 0.0},
+                              {there.u, there.du, there.growth - below.growth}};
+      }
     }
   });
   return pair;
@@ -91,16 +95,24 @@ WaterborneWaves::WaterborneWaves(const Environment& ocean, const Need& need,
   constexpr std::size_t piece = 64;
   in_parallel_chunks(window_.count, piece, [&](std::size_t begin, std::size_t end) {
     stop_point();
-    for (std::size_t j = begin; j < end; ++j) {
-      const Complex xi = window_.at(j);
-      auto [u, v] = pair->waves[j];
-      column.descend(u, xi, upper, need.upper);
-      column.ascend(v, xi, lower, need.lower);
-      const double grown = std::min(u.growth + v.growth, 100.0);
-      const Complex scale = 0.5 * window_.spacing * std::sqrt(2.0 / pi) *
-                            window_.weight(xi.real()) * std::sqrt(xi) *
-                            std::polar(std::exp(grown), 0.25 * pi);
-      kernels_[j] = {scale * u.u * v.u, scale * u.du * v.u, -scale * u.u * v.du};
+    for (std::size_t j = begin; j < end; j += DepthWaves::count) {
+      const Wavenumbers xi(std::min(DepthWaves::count, end - j),
+                           [&](std::size_t lane) { return window_.at(j + lane); });
+      DepthWaves above, below;
+      for (std::size_t l = 0; l < xi.used; ++l) {
+        above.set(l, pair->waves[j + l].above);
+        below.set(l, pair->waves[j + l].below);
+      }
+      column.descend(above, xi, upper, need.upper);
+      column.ascend(below, xi, lower, need.lower);
+      for (std::size_t l = 0; l < xi.used; ++l) {
+        const DepthWave u = above.get(l), v = below.get(l);
+        const double grown = std::min(u.growth + v.growth, 100.0);
+        const Complex scale = 0.5 * window_.spacing * std::sqrt(2.0 / pi) *
+                              window_.weight(xi.xi[l].real()) * std::sqrt(xi.xi[l]) *
+                              std::polar(std::exp(grown), 0.25 * pi);
+        kernels_[j + l] = {scale * u.u * v.u, scale * u.du * v.u, -scale * u.u * v.du};
+      }
     }
   });
 }

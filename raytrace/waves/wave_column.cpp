@@ -244,32 +244,69 @@ std::size_t WaveColumn::slowest_edge() const noexcept {
   return edge;
 }
 
-WaveColumn::AtDepths WaveColumn::solutions(Complex xi) const noexcept {
-  const Complex xi2 = xi * xi;
+template <class Keep>
+void WaveColumn::follow_down(const Wavenumbers& xi, std::size_t first, std::size_t last,
+                             Keep&& keep) const {
+  std::array<std::size_t, DepthWaves::count> start;
+  std::array<DepthWave, DepthWaves::count> wave;
+  DepthWaves waves;
+  for (std::size_t l = 0; l < DepthWaves::count; ++l) {
+    start[l] = l < xi.used ? first : start[0];
+    wave[l] = l < xi.used ? upper_start(xi.xi[l], start[l]) : wave[0];
+    waves.set(l, wave[l]);
+  }
+  for (std::size_t edge = std::ranges::min(start);; ++edge) {
+    for (std::size_t l = 0; l < DepthWaves::count; ++l)
+      if (start[l] == edge) waves.set(l, wave[l]);
+    if (edge >= first) keep(edge, waves);
+    if (edge == last) return;
+    follow(waves, xi, layers_[edge].k2[0], layers_[edge].k2[1], layers_[edge].thickness);
+  }
+}
+
+template <class Keep>
+void WaveColumn::follow_up(const Wavenumbers& xi, std::size_t first, std::size_t last,
+                           Keep&& keep) const {
+  std::array<std::size_t, DepthWaves::count> start;
+  std::array<DepthWave, DepthWaves::count> wave;
+  DepthWaves waves;
+  for (std::size_t l = 0; l < DepthWaves::count; ++l) {
+    start[l] = l < xi.used ? first : start[0];
+    wave[l] = l < xi.used ? lower_start(xi.xi[l], start[l]) : wave[0];
+    waves.set(l, wave[l]);
+  }
+  for (std::size_t edge = std::ranges::max(start);; --edge) {
+    for (std::size_t l = 0; l < DepthWaves::count; ++l)
+      if (start[l] == edge) waves.set(l, wave[l]);
+    if (edge <= first) keep(edge, waves);
+    if (edge == last) return;
+    const WaveLayer& layer = layers_[edge - 1];
+    follow(waves, xi, layer.k2[1], layer.k2[0], layer.thickness);
+  }
+}
+
+std::array<WaveColumn::AtDepths, DepthWaves::count> WaveColumn::solutions(
+    const Wavenumbers& xi) const noexcept {
   const std::size_t receiver_edge = edge_of_.front();
   const auto [first, last] = std::minmax({source_edge_, receiver_edge, slowest_edge_});
-  AtDepths at;
-  const auto keep = [&](std::size_t edge, DepthWave Solutions::*side, const DepthWave& wave) {
-    if (edge == source_edge_) at.source.*side = wave;
-    if (edge == receiver_edge) at.receiver.*side = wave;
-    if (edge == slowest_edge_) at.slowest.*side = wave;
+  std::array<AtDepths, DepthWaves::count> at;
+  const auto keep = [&](std::size_t edge, const DepthWaves& waves, DepthWave Solutions::*side,
+                        double slope) {
+    if (edge != source_edge_ && edge != receiver_edge && edge != slowest_edge_) return;
+    for (std::size_t l = 0; l < DepthWaves::count; ++l) {
+      DepthWave wave = waves.get(l);
+      wave.du *= slope;
+      if (edge == source_edge_) at[l].source.*side = wave;
+      if (edge == receiver_edge) at[l].receiver.*side = wave;
+      if (edge == slowest_edge_) at[l].slowest.*side = wave;
+    }
   };
-  std::size_t edge = first;
-  DepthWave wave = upper_start(xi, edge);
-  for (;; ++edge) {
-    keep(edge, &Solutions::above, wave);
-    if (edge == last) break;
-    const WaveLayer& layer = layers_[edge];
-    follow(wave, layer.k2[0] - xi2, layer.k2[1] - xi2, layer.thickness);
-  }
-  edge = last;
-  wave = lower_start(xi, edge);
-  for (;; --edge) {
-    keep(edge, &Solutions::below, {wave.u, -wave.du, wave.growth});
-    if (edge == first) break;
-    const WaveLayer& layer = layers_[edge - 1];
-    follow(wave, layer.k2[1] - xi2, layer.k2[0] - xi2, layer.thickness);
-  }
+  follow_down(xi, first, last, [&](std::size_t edge, const DepthWaves& waves) {
+    keep(edge, waves, &Solutions::above, 1.0);
+  });
+  follow_up(xi, last, first, [&](std::size_t edge, const DepthWaves& waves) {
+    keep(edge, waves, &Solutions::below, -1.0);
+  });
   return at;
 }
 
@@ -309,24 +346,16 @@ DepthWave WaveColumn::lower_start(Complex xi, std::size_t& edge) const noexcept 
   return {1.0, Complex(0.0, 1.0) * vertical_wavenumber(layers_[edge].k2[0] - xi * xi)};
 }
 
-DepthWave WaveColumn::above(Complex xi, std::size_t edge) const noexcept {
-  const Complex xi2 = xi * xi;
-  std::size_t at = edge;
-  DepthWave wave = upper_start(xi, at);
-  for (; at < edge; ++at)
-    follow(wave, layers_[at].k2[0] - xi2, layers_[at].k2[1] - xi2, layers_[at].thickness);
-  return wave;
+DepthWaves WaveColumn::above(const Wavenumbers& xi, std::size_t edge) const noexcept {
+  DepthWaves found;
+  follow_down(xi, edge, edge, [&](std::size_t, const DepthWaves& waves) { found = waves; });
+  return found;
 }
 
-DepthWave WaveColumn::below(Complex xi, std::size_t edge) const noexcept {
-  const Complex xi2 = xi * xi;
-  std::size_t at = edge;
-  DepthWave wave = lower_start(xi, at);
-  for (; at > edge; --at) {
-    const WaveLayer& layer = layers_[at - 1];
-    follow(wave, layer.k2[1] - xi2, layer.k2[0] - xi2, layer.thickness);
-  }
-  return wave;
+DepthWaves WaveColumn::below(const Wavenumbers& xi, std::size_t edge) const noexcept {
+  DepthWaves found;
+  follow_up(xi, edge, edge, [&](std::size_t, const DepthWaves& waves) { found = waves; });
+  return found;
 }
 
 std::size_t WaveColumn::layer_at(double depth) const noexcept {
@@ -335,59 +364,69 @@ std::size_t WaveColumn::layer_at(double depth) const noexcept {
   return std::min(std::size_t(edge), layers_.size() - 1);
 }
 
-void WaveColumn::descend(DepthWave& wave, Complex xi, std::size_t edge, double depth) const {
-  const Complex xi2 = xi * xi;
+void WaveColumn::descend(DepthWaves& waves, const Wavenumbers& xi, std::size_t edge,
+                         double depth) const {
   for (; edge < layers_.size() && edges_[edge] < depth; ++edge) {
     const WaveLayer& layer = layers_[edge];
     const double down = std::min(depth - edges_[edge], layer.thickness);
     const Complex slope = (layer.k2[1] - layer.k2[0]) / layer.thickness;
-    follow(wave, layer.k2[0] - xi2, layer.k2[0] + slope * down - xi2, down);
+    follow(waves, xi, layer.k2[0], layer.k2[0] + slope * down, down);
   }
 }
 
-void WaveColumn::ascend(DepthWave& wave, Complex xi, std::size_t edge, double depth) const {
-  const Complex xi2 = xi * xi;
+void WaveColumn::ascend(DepthWaves& waves, const Wavenumbers& xi, std::size_t edge,
+                        double depth) const {
   for (; edge > 0 && edges_[edge] > depth; --edge) {
     const WaveLayer& layer = layers_[edge - 1];
     const double up = std::min(edges_[edge] - depth, layer.thickness);
     const Complex slope = (layer.k2[1] - layer.k2[0]) / layer.thickness;
-    follow(wave, layer.k2[1] - xi2, layer.k2[1] - slope * up - xi2, up);
+    follow(waves, xi, layer.k2[1], layer.k2[1] - slope * up, up);
   }
 }
 
-void WaveColumn::kernel(Complex xi, std::span<double> growth, std::span<Complex> g,
-                        std::span<Complex> by_source) const noexcept {
-  const Complex xi2 = xi * xi;
-  for (Complex& value : g) value = 0.0;
-  for (Complex& value : by_source) value = 0.0;
-  DepthWave above = beside(environment_.surface, xi, layers_.front().k2[0]);
+void WaveColumn::kernels(const Wavenumbers& xi, std::span<double> growth,
+                         std::span<Complex> g) const noexcept {
+  const std::size_t n = edge_of_.size();
+  std::fill(g.begin(), g.end(), 0.0);
+  const auto start = [&](const Boundary& boundary, Complex k2) {
+    DepthWaves waves;
+    for (std::size_t l = 0; l < DepthWaves::count; ++l)
+      waves.set(l, l < xi.used ? beside(boundary, xi.xi[l], k2) : waves.get(0));
+    return waves;
+  };
+  const auto put = [&](std::size_t receiver, const DepthWaves& waves) {
+    for (std::size_t l = 0; l < xi.used; ++l) {
+      g[l * n + receiver] = {waves.u_re[l], waves.u_im[l]};
+      growth[l * n + receiver] = waves.growth[l];
+    }
+  };
+  DepthWaves above = start(environment_.surface, layers_.front().k2[0]);
   auto next = order_.begin();
   for (std::size_t edge = 0;; ++edge) {
     for (; next != order_.end() && edge_of_[*next] == edge && edge < source_edge_; ++next)
-      g[*next] = above.u, growth[*next] = above.growth;
+      put(*next, above);
     if (edge == source_edge_) break;
     const WaveLayer& layer = layers_[edge];
-    follow(above, layer.k2[0] - xi2, layer.k2[1] - xi2, layer.thickness);
+    follow(above, xi, layer.k2[0], layer.k2[1], layer.thickness);
   }
   const auto first_below = next;
-  DepthWave below = beside(environment_.bottom, xi, layers_.back().k2[1]);
+  DepthWaves below = start(environment_.bottom, layers_.back().k2[1]);
   auto last = order_.end();
   for (std::size_t edge = layers_.size();; --edge) {
-    for (; last != first_below && edge_of_[*(last - 1)] == edge; --last)
-      g[*(last - 1)] = below.u, growth[*(last - 1)] = below.growth;
+    for (; last != first_below && edge_of_[*(last - 1)] == edge; --last) put(*(last - 1), below);
     if (edge == source_edge_) break;
     const WaveLayer& layer = layers_[edge - 1];
-    follow(below, layer.k2[1] - xi2, layer.k2[0] - xi2, layer.thickness);
+    follow(below, xi, layer.k2[1], layer.k2[0], layer.thickness);
   }
-  // `below` was followed upwards: its derivative downwards has the other sign.
-  const Complex source = -2.0 / (-above.u * below.du - above.du * below.u);
-  for (auto it = order_.begin(); it != order_.end(); ++it) {
-    const bool over = it < first_below;
-    const Complex other = over ? below.u : above.u, slope = over ? -below.du : above.du;
-    const double grown = growth[*it] - (over ? above.growth : below.growth);
-    const Complex here = g[*it] * source * std::exp(std::min(grown, 100.0));
-    g[*it] = here * other;
-    if (!by_source.empty()) by_source[*it] = here * slope;
+  for (std::size_t l = 0; l < xi.used; ++l) {
+    const DepthWave u = above.get(l), v = below.get(l);
+    // `below` was followed upwards: its derivative downwards has the other sign.
+    const Complex source = -2.0 / (-u.u * v.du - u.du * v.u);
+    for (auto it = order_.begin(); it != order_.end(); ++it) {
+      const bool over = it < first_below;
+      const double grown = growth[l * n + *it] - (over ? u.growth : v.growth);
+      g[l * n + *it] *= source * std::exp(std::min(grown, 100.0)) * (over ? v.u : u.u);
+    }
   }
 }
 

@@ -1,11 +1,13 @@
 #pragma once
 #include <algorithm>
+#include <array>
 #include <complex>
 #include <span>
 #include <vector>
 
 #include "raytrace/ocean/environment.h"
 #include "raytrace/waves/depth_wave.h"
+#include "raytrace/waves/depth_waves.h"
 
 namespace asdic::detail {
 
@@ -33,9 +35,9 @@ class WaveColumn {
   WaveColumn(const Environment& environment, double frequency, double cut_for);
 
   /// g(ξ) at every receiver [m]. Im ξ > 0, or some loss somewhere: else modes are poles.
-  /// \param growth  [n] memory for it   \param g  [n]   \param by_source  [n] ∂g/∂z_s, or empty
-  void kernel(std::complex<double> xi, std::span<double> growth, std::span<std::complex<double>> g,
-              std::span<std::complex<double>> by_source = {}) const noexcept;
+  /// \param growth  [lanes × n] memory for it   \param g  [used lanes × n], receivers fastest
+  void kernels(const Wavenumbers& xi, std::span<double> growth,
+               std::span<std::complex<double>> g) const noexcept;
 
   /// What the surface and the bottom each let be at one depth, derivatives downwards.
   struct Solutions {
@@ -46,7 +48,9 @@ class WaveColumn {
   struct AtDepths {
     Solutions source, receiver, slowest;
   };
-  [[nodiscard]] AtDepths solutions(std::complex<double> xi) const noexcept;
+  /// \return one for each lane
+  [[nodiscard]] std::array<AtDepths, DepthWaves::count> solutions(
+      const Wavenumbers& xi) const noexcept;
 
   /// Reflection coefficient of the water between surface and bottom for a wave from below, when
   /// neither returns anything: 1 where the wave turns, and that of corners and bends elsewhere.
@@ -54,11 +58,11 @@ class WaveColumn {
 
   /// What the surface lets be at an edge, its derivative downwards; and the bottom, upwards. Beyond
   /// where a wave has died out (350 dB) nothing is looked at.
-  [[nodiscard]] DepthWave above(std::complex<double> xi, std::size_t edge) const noexcept;
-  [[nodiscard]] DepthWave below(std::complex<double> xi, std::size_t edge) const noexcept;
+  [[nodiscard]] DepthWaves above(const Wavenumbers& xi, std::size_t edge) const noexcept;
+  [[nodiscard]] DepthWaves below(const Wavenumbers& xi, std::size_t edge) const noexcept;
   /// Follow the first down from an edge to a depth, and the second up.
-  void descend(DepthWave& wave, std::complex<double> xi, std::size_t edge, double depth) const;
-  void ascend(DepthWave& wave, std::complex<double> xi, std::size_t edge, double depth) const;
+  void descend(DepthWaves& waves, const Wavenumbers& xi, std::size_t edge, double depth) const;
+  void ascend(DepthWaves& waves, const Wavenumbers& xi, std::size_t edge, double depth) const;
   /// The layer that holds a depth, counted from the top.
   [[nodiscard]] std::size_t layer_at(double depth) const noexcept;
   [[nodiscard]] double edge(std::size_t number) const noexcept { return edges_[number]; }
@@ -100,6 +104,12 @@ class WaveColumn {
   [[nodiscard]] bool fades(std::size_t layer, double xi, double& decay) const noexcept;
   /// The wave that above() and below() follow from the surface or the bottom, or from where a wave
   /// of that wavenumber has died out (350 dB). \param edge  where it is wanted; becomes where it is
+  /// Waves that start at edges of their own, followed from the first of these to the last edge.
+  /// \param keep  is called at each edge from `first` on
+  template <class Keep>
+  void follow_down(const Wavenumbers& xi, std::size_t first, std::size_t last, Keep&& keep) const;
+  template <class Keep>
+  void follow_up(const Wavenumbers& xi, std::size_t first, std::size_t last, Keep&& keep) const;
   [[nodiscard]] DepthWave upper_start(std::complex<double> xi, std::size_t& edge) const noexcept;
   [[nodiscard]] DepthWave lower_start(std::complex<double> xi, std::size_t& edge) const noexcept;
   [[nodiscard]] std::size_t slowest_edge() const noexcept;

@@ -128,10 +128,12 @@ void WaveIntegral::kernels(const Contour& contour, std::size_t first, std::size_
                            std::vector<Complex>& g) const {
   constexpr std::size_t piece = 16;
   in_parallel_chunks(count, piece, [&](std::size_t begin, std::size_t end) {
-    std::vector<double> growth(rows_);
-    for (std::size_t j = begin; j < end; ++j) {
+    std::vector<double> growth(DepthWaves::count * rows_);
+    for (std::size_t j = begin; j < end; j += DepthWaves::count) {
       stop_point();
-      column_.kernel(contour.at(first + j), growth, std::span(g).subspan(j * rows_, rows_));
+      const Wavenumbers xi(std::min(DepthWaves::count, end - j),
+                           [&](std::size_t lane) { return contour.at(first + j + lane); });
+      column_.kernels(xi, growth, std::span(g).subspan(j * rows_, xi.used * rows_));
     }
   });
 }
@@ -181,10 +183,10 @@ void WaveIntegral::add_near(std::vector<Complex>& field,
     });
   };
   // up from zero to where the contour begins
-  std::vector<double> growth(rows_);
+  std::vector<double> growth(DepthWaves::count * rows_);
+  static_assert(leg.size() == DepthWaves::count);
   const auto leg_xi = [&](std::size_t j) { return Complex(0.0, near_.offset * leg[j][0]); };
-  for (std::size_t j = 0; j < leg.size(); ++j)
-    column_.kernel(leg_xi(j), growth, std::span(g).subspan(j * rows_, rows_));
+  column_.kernels(Wavenumbers(leg.size(), leg_xi), growth, std::span(g).first(leg.size() * rows_));
   add(leg.size(), leg_xi, [&](std::size_t j) { return Complex(0.0, near_.offset * leg[j][1]); });
   for (std::size_t first = 0; first < near_.count; first += block) {
     const std::size_t count = std::min(block, near_.count - first);

@@ -29,12 +29,12 @@ Complex integral(const Environment& water, double frequency, double source, doub
                  double range, double furthest) {
   const WaveColumn column(water, frequency, source, std::span(&receiver, 1));
   const WaterWindow window = water_window(column, angle_of_spreading(water, frequency), furthest);
-  std::array<double, 1> growth{};
+  std::array<double, DepthWaves::count> growth{};
   std::array<Complex, 1> g;
   const std::vector<Complex> factors = window.factors(range);
   Complex sum = 0.0;
   for (std::size_t j = 0; j < window.count; ++j) {
-    column.kernel(window.at(j), growth, g);
+    column.kernels(Wavenumbers(1, [&](std::size_t) { return window.at(j); }), growth, g);
     sum += window.factor(window.at(j)) * factors[j] * g[0];
   }
   return sum;
