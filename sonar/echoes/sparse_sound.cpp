@@ -99,11 +99,14 @@ class WideBand {
               std::abs(nepers_per_metre(context, centre_ + half_width_) -
                        nepers_per_metre(context, std::max(1.0, centre_ - half_width_)));
     std::size_t degree = 0;
+    std::unordered_map<const SampledResponse*, std::size_t> known;
     for (const EchoPath& path : paths) {
       std::size_t sum = 0;
       for (std::size_t i = 0; i < path.legs.size(); ++i)
         if (const SampledResponse* leg = legs_.of(path.legs[i])) {
-          const std::size_t own = leg->degree();
+          const auto [found, is_new] = known.try_emplace(leg);
+          if (is_new) found->second = leg->degree();
+          const std::size_t own = found->second;
           sum += own;
           degrees_[i] = std::max(degrees_[i], own);
         }

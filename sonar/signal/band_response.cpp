@@ -12,10 +12,16 @@ constexpr std::size_t most_nodes = 64;
 }  // namespace
 
 double BandNodes::basis(std::size_t k, double frequency) const noexcept {
-  double product = 1.0;
+  if (frequencies.size() < 2) return 1.0;
+  // In units in which distances are some 1: products of 65 of them are numbers.
+  const double unit = 2.0 / half_width;
+  double above = 1.0, below = 1.0;
   for (std::size_t j = 0; j < frequencies.size(); ++j)
-    if (j != k) product *= (frequency - frequencies[j]) / (frequencies[k] - frequencies[j]);
-  return product;
+    if (j != k) {
+      above *= unit * (frequency - frequencies[j]);
+      below *= unit * (frequencies[k] - frequencies[j]);
+    }
+  return above / below;
 }
 
 std::size_t nodes_for(double nepers, double radians, double error) {
