@@ -113,12 +113,20 @@ class Resolution {
  private:
   static std::int16_t rounded(double cells) noexcept {
     constexpr double most = 32'000.0;
-    return static_cast<std::int16_t>(std::lround(std::clamp(cells, -most, most)));
+    return static_cast<std::int16_t>(
+        static_cast<int>(std::clamp(cells, -most, most) + (most + 0.5)) - static_cast<int>(most));
   }
   std::array<Vec3, 3> scale_;  // cells to a slowness [m/s]
   double half_ = 0.0;          // of the array [m]
   double frequency_, pulse_;   // [Hz]; cycles of the pulse
 };
+
+/// Three directions and a part of the Doppler factor in one word.
+std::uint64_t word_of(const Directions& of, std::int16_t more) noexcept {
+  std::uint64_t w = static_cast<std::uint16_t>(more);
+  for (const std::int16_t i : of) w = w << 16 | static_cast<std::uint16_t>(i);
+  return w;
+}
 
 /// A cell of a block: directions of one sound, or of two that are one noise, and Doppler factors.
 class Cell {
@@ -127,7 +135,9 @@ class Cell {
   /// \param other  of the second sound, if there are two
   Cell(const Directions& one, const std::optional<Directions>& other, std::int16_t bend,
        std::int16_t doppler) noexcept
-      : one_(word(one, doppler)), other_(word(other.value_or(Directions{}), bend)), two_(other) {}
+      : one_(word_of(one, doppler)),
+        other_(word_of(other.value_or(Directions{}), bend)),
+        two_(other) {}
 
   [[nodiscard]] Cell in_block(std::uint32_t block) const noexcept {
     Cell cell = *this;
@@ -141,11 +151,6 @@ class Cell {
   }
 
  private:
-  static std::uint64_t word(const Directions& of, std::int16_t more) noexcept {
-    std::uint64_t w = static_cast<std::uint16_t>(more);
-    for (const std::int16_t i : of) w = w << 16 | static_cast<std::uint16_t>(i);
-    return w;
-  }
   std::uint64_t one_ = 0, other_ = 0;
   std::uint32_t block_ = 0;
   bool two_ = false;
@@ -158,8 +163,7 @@ struct CellHash {
 /// What is received of a part of a cell: powers, the two sounds' product, sums weighted with the
 /// powers.
 struct PartSum {
-  Directions direction{};
-  std::int16_t shift = 0;  // part of the Doppler factor
+  std::uint64_t of = 0;  // word_of() its directions and its part of the Doppler factor
   double one = 0.0, other = 0.0, doppler = 0.0;
   std::complex<double> both = 0.0;
   Vec3 one_slowness = Vec3::Zero(), other_slowness = Vec3::Zero();
@@ -190,7 +194,8 @@ struct PartSum {
 
 struct CellSum {
   Cell cell;
-  std::size_t first = 0;  // of its bins
+  std::size_t first = 0;             // of its bins
+  std::vector<std::uint64_t> words;  // of its parts, side by side to be looked through
   std::vector<PartSum> parts;
 
   [[nodiscard]] double power() const noexcept {
@@ -199,8 +204,9 @@ struct CellSum {
     return sum;
   }
   void add(const PartSum& more) {
-    for (PartSum& part : parts)
-      if (part.direction == more.direction && part.shift == more.shift) return part.add(more);
+    for (std::size_t i = 0; i < words.size(); ++i)
+      if (words[i] == more.of) return parts[i].add(more);
+    words.push_back(more.of);
     parts.push_back(more);
   }
 };
@@ -352,8 +358,9 @@ class Gatherer {
     double first = std::max(0.0, (h.delay - 0.5 * h.extent) / bin_);
     const double last = std::min(bins, (h.delay + 0.5 * h.extent) / bin_);
     if (!(first < bins) || last < first) return;
-    const PartSum part{.direction = resolution_.direction(h.one_slowness),
-                       .shift = resolution_.doppler(h.doppler),
+    const Directions direction = resolution_.direction(h.one_slowness);
+    const std::int16_t shift = resolution_.doppler(h.doppler);
+    const PartSum part{.of = word_of(direction, shift),
                        .one = std::norm(h.one),
                        .other = std::norm(h.other),
                        .doppler = (std::norm(h.one) + std::norm(h.other)) * (h.doppler - 1.0),
@@ -364,8 +371,8 @@ class Gatherer {
                        .other_curvature = std::norm(h.other) / h.other_length};
     std::optional<Directions> other;
     if (h.other != 0.0) other = cells_of(resolution_.direction(h.other_slowness));
-    const Cell cell(cells_of(part.direction), other, resolution_.bend(h.one_slowness, h.one_length),
-                    cell_of(part.shift));
+    const Cell cell(cells_of(direction), other, resolution_.bend(h.one_slowness, h.one_length),
+                    cell_of(shift));
     const double whole = std::max(last - first, 1e-9);
     do {
       const auto at = std::min(static_cast<std::size_t>(first), block_of_.size() - 1);
