@@ -144,8 +144,9 @@ class WideBand {
   }
   [[nodiscard]] BandPart part(const BandNodes& nodes, std::size_t k) const {
     BandPart part = band_part(context_, projector_, std::max(1.0, nodes.frequencies[k]));
-    part.filter = [nodes, k](double beside) {
-      return nodes.basis(k, nodes.centre + std::clamp(beside, -nodes.half_width, nodes.half_width));
+    part.filter = [nodes, k, scale = 1.0 / nodes.product(k, nodes.frequencies[k])](double beside) {
+      return scale * nodes.product(
+                         k, nodes.centre + std::clamp(beside, -nodes.half_width, nodes.half_width));
     };
     return part;
   }

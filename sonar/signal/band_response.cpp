@@ -11,17 +11,13 @@ constexpr std::size_t most_nodes = 64;
 
 }  // namespace
 
-double BandNodes::basis(std::size_t k, double frequency) const noexcept {
+double BandNodes::product(std::size_t k, double frequency) const noexcept {
   if (frequencies.size() < 2) return 1.0;
-  // In units in which distances are some 1: products of 65 of them are numbers.
   const double unit = 2.0 / half_width;
-  double above = 1.0, below = 1.0;
+  double product = 1.0;
   for (std::size_t j = 0; j < frequencies.size(); ++j)
-    if (j != k) {
-      above *= unit * (frequency - frequencies[j]);
-      below *= unit * (frequencies[k] - frequencies[j]);
-    }
-  return above / below;
+    if (j != k) product *= unit * (frequency - frequencies[j]);
+  return product;
 }
 
 std::size_t nodes_for(double nepers, double radians, double error) {

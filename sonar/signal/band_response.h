@@ -23,7 +23,11 @@ struct BandNodes {
   std::vector<double> frequencies;        ///< f_k [Hz]
 
   /// ℓ_k(f). \param frequency  [Hz]
-  [[nodiscard]] double basis(std::size_t k, double frequency) const noexcept;
+  [[nodiscard]] double basis(std::size_t k, double frequency) const noexcept {
+    return product(k, frequency) / product(k, frequencies[k]);
+  }
+  /// Π (f − f_j) over the other nodes, in units of half the half width: ℓ_k(f) but for a factor.
+  [[nodiscard]] double product(std::size_t k, double frequency) const noexcept;
 };
 
 /// A band with so many Chebyshev points.
