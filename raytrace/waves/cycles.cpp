@@ -161,7 +161,7 @@ constexpr double least_change = 1e-3;     // of the whole, below which a ray sta
 constexpr double least_weight = 1e-3;     // of a ray in the window of wavenumbers
 constexpr double resolved = 0.99;         // of a wavenumber that is summed history by history
 constexpr double of_a_wave = 0.1;         // what its amplitude may be off by at most
-// Of ends off a wall that waves skim, in Airy's lengths, and of the range along it (k·2L²).
+// Distance of ends from a wall that waves skim, over Airy's length L, and range along it over 2kL².
 constexpr double furthest_off = 1.0, furthest_along = 1.0;
 
 /// Phase factor of a ray's delay.

@@ -62,7 +62,7 @@ struct Corrections {
   Numbers down, up, down_slope, up_slope;
 };
 
-/// As in depth_wave.cpp; each lane has the terms that it has alone.
+/// Corrections of depth_wave.cpp. Each lane has as many terms as it would have alone.
 Corrections corrections(const Numbers& inverse_eta) {
   const Doubles size = abs(inverse_eta.re) + abs(inverse_eta.im);
   Doubles terms = double(airy_terms);
