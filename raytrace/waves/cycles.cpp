@@ -161,8 +161,12 @@ constexpr double least_change = 1e-3;     // of the whole, below which a ray sta
 constexpr double least_weight = 1e-3;     // of a ray in the window of wavenumbers
 constexpr double resolved = 0.99;         // of a wavenumber that is summed history by history
 constexpr double of_a_wave = 0.1;         // what its amplitude may be off by at most
-// Distance of ends from a wall that waves skim, over Airy's length L, and range along it over 2kL².
-constexpr double furthest_off = 1.0, furthest_along = 1.0;
+
+/// Cubic from 0 to 1 between 0 and 1; 0 of what is no number.
+double faded_in(double x) {
+  const double share = x > 0.0 ? std::min(x, 1.0) : 0.0;
+  return share * share * (3.0 - 2.0 * share);
+}
 
 /// Phase factor of a ray's delay.
 Complex turned(const Arrival& ray, double frequency) {
@@ -249,8 +253,7 @@ WaveGroup skimming_group(const FoundLeg& leg, bool surface, const std::vector<do
   const double a = std::abs(leg.source_depth - wall.depth),
                b = std::abs(leg.receiver_depth - wall.depth);
   const double off = std::max(a, b) / length, along = leg.range / (2.0 * k * length * length);
-  const double bends = std::max(off / furthest_off, along / furthest_along);
-  const double x = std::clamp(2.0 * (1.0 - bends), 0.0, 1.0), valid = x * x * (3.0 - 2.0 * x);
+  const double valid = faded_in(2.0 * (1.0 - std::max(off, along)));
   const int most = surface ? leg.limits.max_surface_bounces : leg.limits.max_bottom_bounces;
   WaveGroup group;
   if (!(valid > 0.0) || most == 0) return group;
@@ -444,8 +447,8 @@ void put_waves(const EigenraySolver& solver, double source_depth, double receive
   const bool turned = std::any_of(found.begin(), found.end(), [](const Arrival& ray) {
     return std::norm(ray.amplitude) > 0.0 && ray.upper_turns + ray.lower_turns > 0;
   });
-  const double more = turned ? 0.0 : std::sqrt(reflected / energy) / tolerable_error - 1.0,
-               x = more > 0.0 ? std::min(more, 1.0) : 0.0, faded = x * x * (3.0 - 2.0 * x);
+  const double faded =
+      turned ? 0.0 : faded_in(std::sqrt(reflected / energy) / tolerable_error - 1.0);
   if (!by_cycles && !(faded > 0.0)) return;
 
   const FoundLeg leg{ocean, source_depth, receiver_depth, range, frequency, limits, found};

@@ -61,8 +61,8 @@ struct ReflectionAt {
   Complex operator()(const ReflectionCurves& /*curves*/) const { return continued(); }
 
  private:
-  /// What is tabulated at real angles θ, where it is R = m·e^{iφ} with lines m and φ, at complex
-  /// ones: (m + m′·i·Im θ)·e^{iφ − φ′·Im θ}. Integrals above the real axis grow by up to e⁶ with
+  /// A table's R = m·e^{iφ}, with lines m and φ of real angles θ, at complex ones:
+  /// (m + m′·i·Im θ)·e^{iφ − φ′·Im θ}. Integrals above the real axis grow by up to e⁶ with
   /// range, and whatever is not analytic in R with them.
   Complex continued() const {
     constexpr double step = 1e-6;        // [rad]
@@ -244,20 +244,42 @@ std::size_t WaveColumn::slowest_edge() const noexcept {
   return edge;
 }
 
+namespace {
+
+/// Waves of several wavenumbers, each with the edge from which it is followed.
+class Starts {
+ public:
+  /// \param start  gives the wave of a wavenumber and moves the edge to where it starts
+  template <class Start>
+  Starts(const Wavenumbers& xi, std::size_t edge, const Start& start) {
+    for (std::size_t l = 0; l < DepthWaves::count; ++l) {
+      edges_[l] = l < xi.used ? edge : edges_[0];
+      waves_[l] = l < xi.used ? start(xi.xi[l], edges_[l]) : waves_[0];
+    }
+  }
+  [[nodiscard]] std::size_t uppermost() const { return std::ranges::min(edges_); }
+  [[nodiscard]] std::size_t lowest() const { return std::ranges::max(edges_); }
+  /// Puts in the waves that start at an edge.
+  void put(std::size_t edge, DepthWaves& into) const {
+    for (std::size_t l = 0; l < DepthWaves::count; ++l)
+      if (edges_[l] == edge) into.set(l, waves_[l]);
+  }
+
+ private:
+  std::array<std::size_t, DepthWaves::count> edges_;
+  std::array<DepthWave, DepthWaves::count> waves_;
+};
+
+}  // namespace
+
 template <class Keep>
 void WaveColumn::follow_down(const Wavenumbers& xi, std::size_t first, std::size_t last,
                              Keep&& keep) const {
-  std::array<std::size_t, DepthWaves::count> start;
-  std::array<DepthWave, DepthWaves::count> wave;
+  const Starts starts(xi, first,
+                      [&](Complex one, std::size_t& edge) { return upper_start(one, edge); });
   DepthWaves waves;
-  for (std::size_t l = 0; l < DepthWaves::count; ++l) {
-    start[l] = l < xi.used ? first : start[0];
-    wave[l] = l < xi.used ? upper_start(xi.xi[l], start[l]) : wave[0];
-    waves.set(l, wave[l]);
-  }
-  for (std::size_t edge = std::ranges::min(start);; ++edge) {
-    for (std::size_t l = 0; l < DepthWaves::count; ++l)
-      if (start[l] == edge) waves.set(l, wave[l]);
+  for (std::size_t edge = starts.uppermost();; ++edge) {
+    starts.put(edge, waves);
     if (edge >= first) keep(edge, waves);
     if (edge == last) return;
     follow(waves, xi, layers_[edge].k2[0], layers_[edge].k2[1], layers_[edge].thickness);
@@ -267,17 +289,11 @@ void WaveColumn::follow_down(const Wavenumbers& xi, std::size_t first, std::size
 template <class Keep>
 void WaveColumn::follow_up(const Wavenumbers& xi, std::size_t first, std::size_t last,
                            Keep&& keep) const {
-  std::array<std::size_t, DepthWaves::count> start;
-  std::array<DepthWave, DepthWaves::count> wave;
+  const Starts starts(xi, first,
+                      [&](Complex one, std::size_t& edge) { return lower_start(one, edge); });
   DepthWaves waves;
-  for (std::size_t l = 0; l < DepthWaves::count; ++l) {
-    start[l] = l < xi.used ? first : start[0];
-    wave[l] = l < xi.used ? lower_start(xi.xi[l], start[l]) : wave[0];
-    waves.set(l, wave[l]);
-  }
-  for (std::size_t edge = std::ranges::max(start);; --edge) {
-    for (std::size_t l = 0; l < DepthWaves::count; ++l)
-      if (start[l] == edge) waves.set(l, wave[l]);
+  for (std::size_t edge = starts.lowest();; --edge) {
+    starts.put(edge, waves);
     if (edge <= first) keep(edge, waves);
     if (edge == last) return;
     const WaveLayer& layer = layers_[edge - 1];

@@ -11,7 +11,7 @@
 
 namespace asdic::detail {
 
-/// What a sum over wavenumbers takes off the field one period further out: 80 dB [Np].
+/// Attenuation of the field one period further out, in a sum over wavenumbers: 80 dB [Np].
 inline constexpr double suppressed_by_a_period = 9.21;
 
 /// A layered ocean as its depth-separated wave equation sees it, cut for one source and a number of

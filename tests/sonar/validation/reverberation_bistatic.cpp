@@ -178,7 +178,7 @@ TEST_P(BistaticReverberation, FacetsMirrorIntoANarrowLobe) {
     const auto expected = plane(3000.0, early, law);
     const Sea sea(s);
     const PingReverberation ping = sea.ping(1);
-    // Where only the edge of the pulse is left, 1 ms of delay within a piece is 0.7 dB.
+    // The pulse's edge is left out: there 1 ms of delay within a piece is 0.7 dB.
     const double faintest = 0.1 * *std::max_element(expected.begin(), expected.end());
     for (std::size_t i = 0; i < early.size(); ++i)
       if (expected[i] > faintest) {
