@@ -13,6 +13,7 @@
 #include "raytrace/waves/make_wave.h"
 #include "raytrace/waves/ray_errors.h"
 #include "raytrace/waves/waterborne.h"
+#include "raytrace/waves/wave_integral.h"
 
 namespace asdic::detail {
 namespace {
@@ -243,8 +244,8 @@ struct FoundLeg {
 
 /// Rays that skim one wall where the range is too short for the window to hold such flat waves. The
 /// water's gradient bends rays there, but not waves whose Airy length is far more than the ends are
-/// off the wall: within the range that a ray would need to leave it by that length, they are those
-/// of water at one speed, a direct wave and its image.   \param left_out  [found] by the window
+/// off the wall, within the range that a ray would need to leave it by that length. They have the
+/// field of water above or below that wall alone.   \param left_out  [found] by the window
 WaveGroup skimming_group(const FoundLeg& leg, bool surface, const std::vector<double>& left_out) {
   const Boundary& wall = surface ? leg.ocean.surface : leg.ocean.bottom;
   const SoundSpeed there = leg.ocean.water.at(wall.depth);
@@ -267,21 +268,13 @@ WaveGroup skimming_group(const FoundLeg& leg, bool surface, const std::vector<do
     outside += left_out[i] * std::norm(ray.amplitude);
   }
   if (group.rays.empty()) return group;
-  const WaveColumn column(leg.ocean, leg.frequency, leg.source_depth,
+  const Environment beside = without(leg.ocean, !surface, surface);
+  const WaveColumn column(beside, leg.frequency, leg.source_depth,
                           std::span(&leg.receiver_depth, 1));
-  const Complex wavenumber =
-      0.5 * (std::sqrt(column.at_source().k2) + std::sqrt(column.at_receiver().k2));
-  const auto wave = [&](double height) {
-    const double r = std::hypot(leg.range, height);
-    return std::exp(Complex(0.0, -1.0) * wavenumber * r) / r;
-  };
-  const double image = std::hypot(leg.range, a + b);
-  const Complex reflected = reflection_at(wall,
-                                          {.speed = there.c,
-                                           .density = leg.ocean.water_density.at(wall.depth),
-                                           .frequency = leg.frequency},
-                                          leg.omega(), k * leg.range / image, k * (a + b) / image);
-  group.lacking += valid * outside / energy * (wave(a - b) + reflected * wave(a + b));
+  const WaveIntegral waves(column, 1, beside.bottom.depth - beside.surface.depth,
+                           std::span(&leg.range, 1));
+  if (waves.steps() > most_cycle_steps) return {};
+  group.lacking += valid * outside / energy * waves.field().front();
   return group;
 }
 
