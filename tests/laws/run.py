@@ -238,12 +238,14 @@ def report(options, job, out):
         counts["_"]["seconds"] = spent() - began
         if outcome == "violated":
             print(f"  VIOLATED  {law}: {text}", flush=True)
-            text, s, values = shrunk(law, row, levels, seed, options.shrink) or (text, s, values)
             origin = f"{law}: drawn by scripts/laws.sh, seed {options.seed}, job {job}"
+            as_drawn = written(law, s, values, text, origin)
+            text, s, values = shrunk(law, row, levels, seed, options.shrink) or (text, s, values)
             name = f"{law}-{hashlib.sha256(program.toml(s).encode()).hexdigest()[:6]}"
             folder = Path(options.keep)
             folder.mkdir(parents=True, exist_ok=True)
             (folder / f"{name}.toml").write_text(written(law, s, values, text, origin))
+            (folder / f"{name}.drawn").write_text(as_drawn)  # for a developer: a shrunk case can be another fault
             print(f"  kept as   {name}: {text}", flush=True)
             began = spent() - counts["_"]["seconds"]  # shrinking is no draw
         elif options.verbose:
