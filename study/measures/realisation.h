@@ -73,8 +73,9 @@ inline constexpr const char* drawn_from_column = "drawn_from";
 /// its paths) for as long as they have it, which never changes a bit of a row.
 class Realiser {
  public:
-  /// Of what rows have in common, that is kept: then memory stays flat.
-  static constexpr std::size_t shared_bytes = std::size_t{64} << 20;
+  /// Bound on what is kept of what rows have in common, so that memory stays flat. The streams of
+  /// reverberation of a hull on a shelf take 100 MB, and every draw of a row asks for them.
+  static constexpr std::size_t shared_bytes = std::size_t{192} << 20;
 
   /// \param processes  on this machine, which share its memory where run.memory does not say
   explicit Realiser(Study study, int processes = 1);
