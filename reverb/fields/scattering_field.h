@@ -35,6 +35,8 @@ struct ScatteringField {
   /// Every ping draws it anew although its weights last: they are too many to be received one by
   /// one, and the platform leaves their sums behind.
   bool drawn_anew = false;
+  /// Its weights never change and nobody moves, so that every ping receives the same sums of them.
+  bool stays = false;
   double share = 1.0;  ///< of its pressure that is received; the rest is of other anchors' fields
 
   [[nodiscard]] double ring_area(std::uint32_t ring) const noexcept;  ///< [m²]

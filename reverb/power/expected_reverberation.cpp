@@ -372,7 +372,7 @@ std::optional<ExactKey> ExpectedReverberation::key(std::span<const ScatteringFie
   for (const ScatteringField& f : fields) {
     // All but motion, statistics and draws' keys.
     const auto& [sheet, grid, field, weights, boundary, depth, thickness, received_by, bearings,
-                 divided_below, bounces, drawn_anew, share] = f;
+                 divided_below, bounces, drawn_anew, stays, share] = f;
     const auto& [anchor, identity, spacing, azimuths, per_cell, first_bearing, rings] = grid;
     if (!sheet.add_to(key)) return std::nullopt;
     key.add_all(anchor, spacing, azimuths, per_cell, first_bearing, rings, depth, bearings,

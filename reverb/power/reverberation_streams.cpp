@@ -50,10 +50,10 @@ double length_along(const Vec3& axis, std::span<const std::vector<Vec3>> shapes)
 /// Blocks of a quarter of a pulse and, later, of an eighth of the delay: no direction depends on
 /// them, but each asks for transforms that are a pulse longer.
 std::vector<StreamBlock> blocks_of(std::size_t bins, double pulse_bins) {
-  const auto least = static_cast<std::size_t>(std::max(2.0, 0.25 * pulse_bins));
+  const auto least = static_cast<std::size_t>(std::max(2.0, 0.5 * pulse_bins));
   std::vector<StreamBlock> found;
   for (std::size_t begin = 0; begin < bins;) {
-    const std::size_t end = std::min(bins, begin + std::max(least, begin / 8));
+    const std::size_t end = std::min(bins, begin + std::max(least, begin / 4));
     found.push_back({.begin = begin, .end = end});
     begin = end;
   }
@@ -75,11 +75,13 @@ Directions cells_of(Directions parts) noexcept {
 /// What array and pulse cannot resolve. Along each of its axes the array's ends are half[i] from
 /// its middle: powers of its beams are correlations over no more than 2·half, and a sum over
 /// directions at steps of 2π·f·s·half below π is the integral. Doppler spectra are of correlations
-/// no longer than the pulse: so are sums at steps of less than 1/T. Cells are 2 rad and 0.75/T.
+/// no longer than the pulse: so are sums at steps of less than 1/T. Cells are 2 rad and 0.75/T, or
+/// as wide as a sweep tolerates: a shift by ν delays it by νT/B, far less than a bin.
 class Resolution {
  public:
   explicit Resolution(const Listener& to)
-      : frequency_(to.frequency), pulse_(to.frequency * to.pulse_duration) {
+      : frequency_(to.frequency),
+        dopplers_(to.frequency / std::max(0.75 / to.pulse_duration, to.doppler_tolerance)) {
     constexpr double step = 2.0;  // [rad]
     for (std::size_t i = 0; i < 3; ++i) {
       scale_[i] = pi * to.frequency / step * to.extents[i];
@@ -88,10 +90,11 @@ class Resolution {
   }
 
   /// Cells of directions all round, in bearing.
-  [[nodiscard]] double bearings() const noexcept {
+  /// \param speed  of the faster end, at which cells of Doppler factors follow each other [m/s]
+  [[nodiscard]] double bearings(double speed) const noexcept {
     double widest = 0.0;
     for (const Vec3& s : scale_) widest = std::max(widest, s.head<2>().norm());
-    return 2.0 * pi * widest / slowest_sea;
+    return 2.0 * pi * (widest + 0.75 * dopplers_ * speed) / slowest_sea;
   }
   /// The part of a direction, a third of a cell wide along each axis.
   [[nodiscard]] Directions direction(const Vec3& slowness) const noexcept {
@@ -106,8 +109,7 @@ class Resolution {
   }
   /// The part of a Doppler factor, a third of a cell wide.
   [[nodiscard]] std::int16_t doppler(double factor) const noexcept {
-    constexpr double step = 0.75;  // of 1/T
-    return rounded(3.0 * (factor - 1.0) * pulse_ / step);
+    return rounded(3.0 * (factor - 1.0) * dopplers_);
   }
 
  private:
@@ -118,7 +120,8 @@ class Resolution {
   }
   std::array<Vec3, 3> scale_;  // cells to a slowness [m/s]
   double half_ = 0.0;          // of the array [m]
-  double frequency_, pulse_;   // [Hz]; cycles of the pulse
+  double frequency_;           // [Hz]
+  double dopplers_;            // cells to a change of the factor by 1
 };
 
 /// Three directions and a part of the Doppler factor in one word.
@@ -139,6 +142,12 @@ class Cell {
         other_(word_of(other.value_or(Directions{}), bend)),
         two_(other) {}
 
+  [[nodiscard]] Cell lasting(bool lasts) const noexcept {
+    Cell cell = *this;
+    cell.lasts_ = lasts;
+    return cell;
+  }
+  [[nodiscard]] bool lasts() const noexcept { return lasts_; }
   [[nodiscard]] Cell in_block(std::uint32_t block) const noexcept {
     Cell cell = *this;
     cell.block_ = block;
@@ -147,13 +156,15 @@ class Cell {
   [[nodiscard]] std::uint32_t block() const noexcept { return block_; }
   [[nodiscard]] bool operator==(const Cell&) const = default;
   [[nodiscard]] std::uint64_t entity() const noexcept {
-    return mixed(mixed(one_, other_), std::uint64_t{block_} << 1 | (two_ ? 1 : 0));
+    constexpr std::uint64_t one = 1;
+    return mixed(mixed(one_, other_),
+                 std::uint64_t{block_} << 1 | (two_ ? one : 0) | (lasts_ ? one << 40 : 0));
   }
 
  private:
   std::uint64_t one_ = 0, other_ = 0;
   std::uint32_t block_ = 0;
-  bool two_ = false;
+  bool two_ = false, lasts_ = false;
 };
 
 struct CellHash {
@@ -353,7 +364,8 @@ class Gatherer {
            std::span<const std::uint32_t> block_of, double bin)
       : resolution_(resolution), blocks_(blocks), block_of_(block_of), bin_(bin) {}
 
-  void add(const Received& h, CellSums& sums) const {
+  /// \param lasts  from ping to ping
+  void add(const Received& h, bool lasts, CellSums& sums) const {
     const double bins = static_cast<double>(block_of_.size());
     double first = std::max(0.0, (h.delay - 0.5 * h.extent) / bin_);
     const double last = std::min(bins, (h.delay + 0.5 * h.extent) / bin_);
@@ -371,8 +383,9 @@ class Gatherer {
                        .other_curvature = std::norm(h.other) / h.other_length};
     std::optional<Directions> other;
     if (h.other != 0.0) other = cells_of(resolution_.direction(h.other_slowness));
-    const Cell cell(cells_of(direction), other, resolution_.bend(h.one_slowness, h.one_length),
-                    cell_of(shift));
+    const Cell cell = Cell(cells_of(direction), other,
+                           resolution_.bend(h.one_slowness, h.one_length), cell_of(shift))
+                          .lasting(lasts);
     const double whole = std::max(last - first, 1e-9);
     do {
       const auto at = std::min(static_cast<std::size_t>(first), block_of_.size() - 1);
@@ -414,17 +427,14 @@ ReverberationStreams::Part finished(const PartSum& sum) {
 }
 
 /// Steps of direction and Doppler factor all round.
-double bearings_of(const Resolution& resolution, const Listener& listener,
-                   const ScatteringField& field) {
-  const double fastest = field.sheet.fastest_ends() + 2.0 * field.field.motion.current.norm();
-  return resolution.bearings() +
-         2.0 * pi * fastest * listener.frequency * listener.pulse_duration / slowest_sea;
+double bearings_of(const Resolution& resolution, const ScatteringField& field) {
+  return resolution.bearings(field.sheet.fastest_ends() + 2.0 * field.field.motion.current.norm());
 }
 
 /// Cells of a block, roughly: there are some three directions to a bearing.
 double streams_of_block(const Listener& listener, const ScatteringField& field) {
   constexpr double directions = 3.0, fewest = 8.0;
-  return directions * std::max(fewest, bearings_of(Resolution(listener), listener, field));
+  return directions * std::max(fewest, bearings_of(Resolution(listener), field));
 }
 
 }  // namespace
@@ -489,7 +499,7 @@ std::array<Vec3, 3> ReverberationStreams::extents_of(std::span<const std::vector
 bool ReverberationStreams::serves(const ScatteringField& field) noexcept {
   const ScattererField& f = field.field;
   return field.sheet.ends().band.empty() && f.motion.kind != ScattererMotion::Kind::spread &&
-         f.statistics.coherence_time == 0.0 && !f.statistics.k_shape;
+         (f.statistics.coherence_time == 0.0 || field.stays) && !f.statistics.k_shape;
 }
 
 double ReverberationStreams::worth(const Listener& listener, const ScatteringField& field) {
@@ -518,7 +528,7 @@ ReverberationStreams::ReverberationStreams(std::span<const ScatteringField* cons
   constexpr std::size_t together = 16;  // circles of a task
   CellSums sums(blocks);
   for (const ScatteringField* field : fields) {
-    const GroundAround ground(*field, bin, 1.5 * bearings_of(resolution, listener, *field));
+    const GroundAround ground(*field, bin, 1.5 * bearings_of(resolution, *field));
     const PathInterference interference(listener.places, field->sheet.ends().frequency,
                                         *listener.coherence, false);
     const std::size_t circles = ground.edges.size() - 1;
@@ -529,7 +539,7 @@ ReverberationStreams::ReverberationStreams(std::span<const ScatteringField* cons
       for (std::size_t i = part * together; i < std::min(circles, (part + 1) * together); ++i) {
         received.clear();
         ground.receive(i, limits, interference, memory, received);
-        for (const Received& h : received) gatherer.add(h, parts[part]);
+        for (const Received& h : received) gatherer.add(h, field->stays, parts[part]);
       }
     });
     for (CellSums& part : parts) sums.add(std::move(part));
@@ -559,6 +569,7 @@ ReverberationStreams::ReverberationStreams(std::span<const ScatteringField* cons
         parts.back().chance = (before += part.power()) / sum.power();
       }
       streams.push_back({.entity = sum.cell.entity(),
+                         .lasts = sum.cell.lasts(),
                          .first = intensity.size(),
                          .first_part = first_part,
                          .parts = parts.size() - first_part});

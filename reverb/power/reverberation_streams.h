@@ -32,6 +32,8 @@ struct ReverberationStreams {
     double frequency = 1000.0;    ///< the highest that matters [Hz]
     double bandwidth = 10.0;      ///< of the pulse [Hz]
     double pulse_duration = 1.0;  ///< [s]
+    /// Doppler shifts so close to each other only delay the pulse, as they do a sweep [Hz].
+    double doppler_tolerance = 0.0;
     /// Of the pulse with itself; none: a tone that never ends.
     std::shared_ptr<const PulseCoherence> coherence = std::make_shared<const PulseCoherence>();
     /// Of phones, over which sounds of one place interfere in the mean, relative to the array's
@@ -53,6 +55,7 @@ struct ReverberationStreams {
   /// The noise of a cell: out of one of its parts in a ping, drawn by its power.
   struct Stream {
     std::uint64_t entity = 0;               ///< key of its draws
+    bool lasts = false;                     ///< from ping to ping (ScatteringField::stays)
     std::size_t first = 0;                  ///< of its intensities
     std::size_t first_part = 0, parts = 0;  ///< of its parts
   };
@@ -75,7 +78,8 @@ struct ReverberationStreams {
   [[nodiscard]] static std::array<Vec3, 3> extents_of(std::span<const std::vector<Vec3>> shapes,
                                                       double frequency);
   /// Whether a field may be received so: scatterers without velocities of their own and without
-  /// texture, weights of every ping's own, amplitudes of the centre frequency.
+  /// texture, amplitudes of the centre frequency, and weights of every ping's own or of which every
+  /// ping receives the same sums.
   [[nodiscard]] static bool serves(const ScatteringField& field) noexcept;
   /// Returns that take as long to grid one by one as a ping of the field's streams, roughly: a
   /// sparse array resolves very many directions.
@@ -85,7 +89,7 @@ struct ReverberationStreams {
   [[nodiscard]] static MemoryNeed need(std::span<const ScatteringField* const> fields,
                                        const Listener& listener);
   [[nodiscard]] std::size_t bytes() const noexcept;
-  /// Out of which a stream sounds in a ping.
+  /// Out of which a stream sounds. \param ping  key of its draws beside the seed
   [[nodiscard]] const Part& part_of(const Stream& stream, std::uint64_t seed,
                                     std::uint32_t ping) const noexcept;
 

@@ -531,7 +531,10 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
                      : dense != nullptr
                          ? synthesizer.silence(*dense, std::move(used_before))
                          : synthesizer.silence(phones.size(), std::move(used_before));
-      const CovarianceDraw draw{.seed = scenario_.seed, .ping = static_cast<std::uint32_t>(ping)};
+      const CovarianceDraw draw{
+          .seed = scenario_.seed,
+          .ping = static_cast<std::uint32_t>(ping),
+          .lasting = ~static_cast<std::uint32_t>(emission.geometry.sent().transmitter)};
       if (dense != nullptr) synthesizer.add_gaussian(*dense, draw, sea);
       if (streams != nullptr) synthesizer.add_streams(*streams, around, draw, sea, heard);
       append_channels(reverberated, std::move(sea));

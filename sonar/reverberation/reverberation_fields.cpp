@@ -213,6 +213,13 @@ bool ReverberationFields::seas_compared(const ScattererField& field) const {
                      });
 }
 
+bool ReverberationFields::stays(const ScattererField& field) const {
+  return field.statistics.coherence_time == infinity && !field.statistics.k_shape &&
+         field.motion.current.isZero() && scenario_.arrays.size() == 1 &&
+         std::all_of(scenario_.platforms.begin(), scenario_.platforms.end(),
+                     [](const Platform& platform) { return fastest(platform.track) == 0.0; });
+}
+
 bool ReverberationFields::left_behind(const ReverberationContext& context, const Vec2& middle,
                                       const Vec2& next) const {
   const ReverberationSettings& settings = scenario_.reverberation;
@@ -370,6 +377,7 @@ void ReverberationFields::meet(ScatteringPart part, const ReverberationContext& 
          .divided_below =
              2.0 * std::max((source - anchor.place).norm(), farthest_phone(anchor.place)),
          .bounces = followed,
+         .stays = stays(field),
          .share = anchor.share});
   }
 }

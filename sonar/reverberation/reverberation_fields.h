@@ -56,6 +56,8 @@ class ReverberationFields {
   /// The same, as one of which every ping draws its own.
   void meet_anew(ScatteringPart part, const ReverberationContext& context, Ground ground,
                  std::vector<ScatteringField>& fields) const;
+  /// ScatteringField::stays
+  [[nodiscard]] bool stays(const ScattererField& field) const;
   /// Whether the next ping receives other sums of the same scatterers, and streams could stand for
   /// them. \param middle, next  of source and receiver, at this ping and the next
   [[nodiscard]] bool left_behind(const ReverberationContext& context, const Vec2& middle,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <variant>
 
 #include "reverb/power/reverberation_streams.h"
 #include "sonar/reverberation/reverberation_covariance.h"
@@ -92,6 +93,14 @@ std::vector<std::vector<Vec3>> any_heading(std::span<const Vec3> phones, double 
   return {cross};
 }
 
+/// Doppler shifts between which a sweep is itself, but for a delay: a hundredth of its band to
+/// either side, where it correlates with itself by 0.99. Nothing of other pulses [Hz]
+double doppler_tolerance(const Pulse& pulse) noexcept {
+  const AnyWaveform& waveform = pulse.settings().waveform;
+  const bool sweep = std::holds_alternative<Lfm>(waveform) || std::holds_alternative<Hfm>(waveform);
+  return sweep ? 0.02 * pulse.bandwidth_99() : 0.0;
+}
+
 /// Who receives them.
 ReverberationStreams::Listener stream_listener(const Scenario& scenario,
                                                const ReverberationContext& context) {
@@ -108,6 +117,7 @@ ReverberationStreams::Listener stream_listener(const Scenario& scenario,
           .frequency = highest,
           .bandwidth = context.pulse.bandwidth_99(),
           .pulse_duration = context.pulse.duration(),
+          .doppler_tolerance = doppler_tolerance(context.pulse),
           .coherence = pulse_coherence(context.pulse),
           .places = changes ? shapes.front() : places_of(several, context.phones),
           .latest = context.latest};
@@ -194,11 +204,11 @@ std::shared_ptr<const ReverberationStreams> ReverberationModel::streams_of(
     return std::make_shared<ReverberationStreams>(served, expected.limits, listener);
   };
   if (!key) return make();
-  key->add(listener.frequency);
+  key->add_all(listener.frequency, listener.doppler_tolerance);
   key->add(listener.coherence->fingerprint());
   for (const ScatteringField& field : fields) {
     const ScattererMotion& motion = field.field.motion;
-    key->add_all(static_cast<int>(field.received_by), field.thickness, field.boundary,
+    key->add_all(static_cast<int>(field.received_by), field.thickness, field.boundary, field.stays,
                  static_cast<int>(motion.kind), motion.receding_share, motion.current);
   }
   for (const Vec3& axis : listener.extents) key->add(axis);

@@ -309,7 +309,8 @@ Piece piece_of(const ReverberationStreams& sea, const StreamBlock& block, const 
   std::vector<Rotation> first(phones.size()), on(phones.size());
   for (std::size_t s = block.first; s < block.last; ++s) {
     const ReverberationStreams::Stream& stream = sea.streams[s];
-    const ReverberationStreams::Part& part = sea.part_of(stream, draw.seed, draw.ping);
+    const std::uint32_t ping = stream.lasts ? draw.lasting : draw.ping;
+    const ReverberationStreams::Part& part = sea.part_of(stream, draw.seed, ping);
     const StretchedPulses::Shifted stretched = pulses.at(part.doppler);
     const std::ptrdiff_t place =
         static_cast<std::ptrdiff_t>(stride + highest) + stretched.first;  // in the rows received
@@ -318,7 +319,7 @@ Piece piece_of(const ReverberationStreams& sea, const StreamBlock& block, const 
     power_of.find(&sea.intensity[stream.first], power);
     for (std::size_t noise = 0; noise < part.weight.size(); ++noise) {
       if (part.weight[noise][0] == 0.0 && part.weight[noise][1] == 0.0) continue;
-      fill_normal(normals, draw.seed, Draw::covariance_weight, draw.ping, stream.entity + noise);
+      fill_normal(normals, draw.seed, Draw::covariance_weight, ping, stream.entity + noise);
       for (std::size_t j = 0; j < power.size(); ++j) {
         const float root = received_step(j) ? std::sqrt(0.5F * power[j]) : 0.0F;
         noise_of[j] = {root * normals[2 * j], root * normals[2 * j + 1]};

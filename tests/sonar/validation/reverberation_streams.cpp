@@ -102,8 +102,10 @@ double intensity(const Sea& sea, double delay) {
 // e^{iψ} across 1.3 rad between them the mean instead of all is off by 0.07, which neighbours share
 // with either sign: 0.03. Power: bins and circles, 3 %. Blocks hold an eighth of their delay, over
 // which sin θ of the phases of depth (4 rad × 0.6 m) changes by as much: 0.01.
-TEST(ReverberationStreams, AreABesselFunctionOfPlacesAndTheAnnulusIntegral) {
+// A sweep's cells of Doppler factors are wider, its parts still narrow.
+void expect_bessel_function_of_places(const AnyWaveform& waveform) {
   Scenario s = under_way();
+  s.pulse.waveform = waveform;
   s.pulse.duration = 0.5;
   const Sea sea(s);
   const PingReverberation ping = sea.ping(1);
@@ -128,6 +130,12 @@ TEST(ReverberationStreams, AreABesselFunctionOfPlacesAndTheAnnulusIntegral) {
     const double widest = 2.0 * speed * cosine / c;
     EXPECT_NEAR(all.doppler2 / (0.5 * widest * widest), 1.0, 0.03) << t;
   }
+}
+TEST(ReverberationStreams, AreABesselFunctionOfPlacesAndTheAnnulusIntegral) {
+  expect_bessel_function_of_places(Cw{.frequency = 1000.0});
+}
+TEST(ReverberationStreams, OfASweepAreABesselFunctionOfPlacesToo) {
+  expect_bessel_function_of_places(Lfm{.start_frequency = 950.0, .end_frequency = 1050.0});
 }
 
 /// J₀(kd cos θ) of the level distance times the phase of depth, from the surface at a delay.
@@ -313,6 +321,42 @@ TEST(ReverberationStreams, HaveTheDopplerSpectrumOfThePlainSum) {
   EXPECT_GT(furthest, std::log(1.32));
 }
 
+// A sweep over 100 Hz by a vehicle at 20 m/s: ±27 Hz of Doppler in cells of 2 Hz where a tone of 1
+// s has cells of 0.75 Hz, and less than two thirds of its streams. Phones' covariances and the
+// spectrum with its edges are those of the plain sum: 160 exponential samples each, 4.9·√(2/160) of
+// a logarithm. At rest the edges lie elsewhere, which must fail.
+TEST(ReverberationStreams, OfASweepHaveTheMomentsAndTheSpectrumOfThePlainSum) {
+  Scenario s = under_way();
+  s.platforms[0].track.start.velocity = {0.6 * 20.0, 0.8 * 20.0, 0.0};
+  s.pulse = {.waveform = Lfm{.start_frequency = 950.0, .end_frequency = 1050.0}, .duration = 1.0};
+  Scenario tone = s;
+  tone.pulse.waveform = Cw{.frequency = 1050.0};
+  const std::size_t of_tone = Sea(tone).ping(1).streams()->streams.size();
+  EXPECT_LT(3 * Sea(s).ping(1).streams()->streams.size(), 2 * of_tone);
+  support::expect_moments_of_the_plain_sum(s);
+  s.arrays[0].phones = {Vec3::Zero()};
+  Scenario plain = s, still = s;
+  plain.reverberation.synthesis = ScattererSynthesis::scatterers;
+  still.platforms[0].track.start.velocity.setZero();
+  std::vector<Baseband> one, other, wrong;
+  const Sea as_streams(s), one_by_one(plain), at_rest(still);
+  for (std::uint32_t ping = 1; ping <= 40; ++ping) {
+    one.push_back(as_streams.receive(ping));
+    other.push_back(one_by_one.receive(ping));
+    wrong.push_back(at_rest.receive(ping));
+  }
+  const double allowed = 4.9 * std::sqrt(2.0 / 160.0);
+  double furthest = 0.0;
+  for (double f = -70.0; f <= 70.0; f += 4.0) {
+    const auto at = [&](const std::vector<Baseband>& received) {
+      return cross_spectrum(received, 0, 0, 3.5, 12.0, 2.0, f).real();
+    };
+    EXPECT_NEAR(std::log(at(one) / at(other)), 0.0, allowed) << f;
+    furthest = std::max(furthest, std::abs(std::log(at(wrong) / at(other))));
+  }
+  EXPECT_GT(furthest, allowed);
+}
+
 // Phones up to 40 m apart, scatterers from 525 m away: fronts are spheres, whose ends lie
 // k·x²/8R up to 1.6 rad behind. Against the sum over the surface, each place with its own distance
 // to either phone. The mean over a part 1.3 rad wide between the ends is off by 0.07 of it. Plane
@@ -399,6 +443,14 @@ TEST(ReverberationStreams, ServeSeasThatForget) {
   }));
   EXPECT_FALSE(
       with([](Scenario& s) { s.reverberation.surface_field.statistics.coherence_time = 10.0; }));
+  const auto frozen = [](Scenario& s) {
+    s.reverberation.surface_field.statistics.coherence_time = infinity;
+  };
+  EXPECT_FALSE(with(frozen));
+  EXPECT_TRUE(with([&](Scenario& s) {
+    frozen(s);
+    s.platforms[0].track.start.velocity.setZero();
+  }));
   EXPECT_FALSE(with([](Scenario& s) { s.reverberation.surface_field.statistics.k_shape = 1.0; }));
   EXPECT_FALSE(with([](Scenario& s) {
     s.reverberation.surface_field.motion = {.kind = ScattererMotion::Kind::spread,
@@ -431,6 +483,38 @@ TEST(ReverberationStreams, AFrozenSeaThatIsReceivedOnceIsAFreshOne) {
   frozen.reverberation.synthesis = ScattererSynthesis::streams;
   frozen.arrays.push_back(frozen.arrays[0]);
   EXPECT_EQ(received(frozen, true), received(frozen, false));
+}
+
+// Who lies still receives the same sums of a frozen sea with every ping: streams whose noise stays.
+// The bottom's stays beside a surface whose does not.
+TEST(ReverberationStreams, AFrozenSeaStaysWhereNobodyMoves) {
+  Scenario s = under_way();
+  s.platforms[0].track.start.velocity.setZero();
+  s.environment.bottom.depth = 900.0;
+  s.pings.recording_duration = 3.0;
+  s.pings.count = 2;
+  s.reverberation.bottom = Lambert{.mu_db = -10.0};
+  s.reverberation.bottom_field.statistics.coherence_time = infinity;
+  const auto change = [](const Scenario& of) {
+    const PingSimulator simulator(of);
+    const std::vector<float> first = simulator.simulate(1).pressure,
+                             second = simulator.simulate(2).pressure;
+    double changed = 0.0, all = 0.0;
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      changed += std::pow(double(second[i]) - double(first[i]), 2);
+      all += std::pow(double(first[i]), 2);
+    }
+    EXPECT_GT(all, 0.0);
+    return changed / all;
+  };
+  Scenario both = s;
+  both.reverberation.surface_field.statistics.coherence_time = infinity;
+  EXPECT_EQ(change(both), 0.0);
+  const double of_the_surface = change(s);
+  EXPECT_GT(of_the_surface, 1e-4);
+  EXPECT_LT(of_the_surface, 1.0);
+  s.reverberation.bottom_field.statistics.coherence_time = 0.0;
+  EXPECT_GT(change(s), 1.5);
 }
 
 // A frozen sea of too many scatterers for one by one, of which a sonar that goes on receives other
