@@ -50,10 +50,10 @@ double length_along(const Vec3& axis, std::span<const std::vector<Vec3>> shapes)
 /// Blocks of a quarter of a pulse and, later, of an eighth of the delay: no direction depends on
 /// them, but each asks for transforms that are a pulse longer.
 std::vector<StreamBlock> blocks_of(std::size_t bins, double pulse_bins) {
-  const auto least = static_cast<std::size_t>(std::max(2.0, 0.5 * pulse_bins));
+  const auto least = static_cast<std::size_t>(std::max(2.0, 0.25 * pulse_bins));
   std::vector<StreamBlock> found;
   for (std::size_t begin = 0; begin < bins;) {
-    const std::size_t end = std::min(bins, begin + std::max(least, begin / 4));
+    const std::size_t end = std::min(bins, begin + std::max(least, begin / 8));
     found.push_back({.begin = begin, .end = end});
     begin = end;
   }
