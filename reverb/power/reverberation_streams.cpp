@@ -178,6 +178,7 @@ struct PartSum {
   double one = 0.0, other = 0.0, doppler = 0.0;
   std::complex<double> both = 0.0;
   Vec3 one_slowness = Vec3::Zero(), other_slowness = Vec3::Zero();
+  double one_norm = 0.0, other_norm = 0.0;
   double one_curvature = 0.0, other_curvature = 0.0;
 
   [[nodiscard]] double power() const noexcept { return one + other; }
@@ -188,6 +189,8 @@ struct PartSum {
     both *= share;
     one_slowness *= share;
     other_slowness *= share;
+    one_norm *= share;
+    other_norm *= share;
     one_curvature *= share;
     other_curvature *= share;
   }
@@ -198,6 +201,8 @@ struct PartSum {
     both += more.both;
     one_slowness += more.one_slowness;
     other_slowness += more.other_slowness;
+    one_norm += more.one_norm;
+    other_norm += more.other_norm;
     one_curvature += more.one_curvature;
     other_curvature += more.other_curvature;
   }
@@ -379,6 +384,8 @@ class Gatherer {
                        .both = h.one * std::conj(h.other),
                        .one_slowness = std::norm(h.one) * h.one_slowness,
                        .other_slowness = std::norm(h.other) * h.other_slowness,
+                       .one_norm = std::norm(h.one) * h.one_slowness.norm(),
+                       .other_norm = std::norm(h.other) * h.other_slowness.norm(),
                        .one_curvature = std::norm(h.one) / h.one_length,
                        .other_curvature = std::norm(h.other) / h.other_length};
     std::optional<Directions> other;
@@ -414,11 +421,13 @@ ReverberationStreams::Part finished(const PartSum& sum) {
   constexpr double nothing = 1e-6;
   const double all = sum.power();
   ReverberationStreams::Part part{.slowness = {sum.one_slowness / sum.one, Vec3::Zero()},
+                                  .length = {sum.one_norm / sum.one, 0.0},
                                   .curvature = {sum.one_curvature / sum.one, 0.0},
                                   .doppler = 1.0 + sum.doppler / all};
   part.weight[0][0] = std::sqrt(sum.one / all);
   if (!(sum.other > 0.0)) return part;
   part.slowness[1] = sum.other_slowness / sum.other;
+  part.length[1] = sum.other_norm / sum.other;
   part.curvature[1] = sum.other_curvature / sum.other;
   part.weight[0][1] = std::conj(sum.both) / std::sqrt(sum.one * all);
   const double rest = sum.other / all - std::norm(part.weight[0][1]);

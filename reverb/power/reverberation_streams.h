@@ -45,7 +45,10 @@ struct ReverberationStreams {
   /// the way from the ground is long.
   struct Part {
     std::array<Vec3, 2> slowness = {Vec3::Zero(), Vec3::Zero()};  ///< as the array meets it [s/m]
-    std::array<double, 2> curvature = {0.0, 0.0};                 ///< one over the radius [1/m]
+    /// Mean length of the slownesses [s/m]: more than the length of their mean, where directions on
+    /// either side of a line of phones are one part.
+    std::array<double, 2> length = {0.0, 0.0};
+    std::array<double, 2> curvature = {0.0, 0.0};  ///< one over the radius [1/m]
     /// Pressure of each for each of two noises, Σ|weight|² = 1. One direction has one noise; two
     /// have one, too, as far as what comes from there is in phase.
     std::array<std::array<std::complex<double>, 2>, 2> weight = {};

@@ -214,10 +214,13 @@ bool ReverberationFields::seas_compared(const ScattererField& field) const {
 }
 
 bool ReverberationFields::stays(const ScattererField& field) const {
+  // Phases change by less than 0.02 rad in an hour up to 1 MHz.
+  constexpr double next_to_nothing = 1e-9;  // [m/s]
   return field.statistics.coherence_time == infinity && !field.statistics.k_shape &&
          field.motion.current.isZero() && scenario_.arrays.size() == 1 &&
-         std::all_of(scenario_.platforms.begin(), scenario_.platforms.end(),
-                     [](const Platform& platform) { return fastest(platform.track) == 0.0; });
+         std::all_of(
+             scenario_.platforms.begin(), scenario_.platforms.end(),
+             [](const Platform& platform) { return fastest(platform.track) <= next_to_nothing; });
 }
 
 bool ReverberationFields::left_behind(const ReverberationContext& context, const Vec2& middle,
@@ -356,6 +359,14 @@ void ReverberationFields::meet(ScatteringPart part, const ReverberationContext& 
       farthest = std::max(farthest, (reference + x.head<2>() - place).norm());
     return farthest;
   };
+  // Streams are held to a closed form where phones are far nearer to the array's middle than the
+  // ground is; a longer line receives what lasts in groups.
+  constexpr double near = 0.1;
+  double furthest = 0.0;  // [m]
+  for (const Vec3& x : context.geometry.phones(context.array))
+    furthest = std::max(furthest, x.norm());
+  const double height = std::abs(depth(ends.receiver.position) - ends.receiver.position.z());
+  const bool streams_fit = context.plane_waves || furthest < near * height;
   for (const Anchor& anchor : anchors) {
     const double beside = (0.5 * (source + receiver) - anchor.place).norm() + 0.5 * moved;
     fields.push_back(
@@ -377,7 +388,7 @@ void ReverberationFields::meet(ScatteringPart part, const ReverberationContext& 
          .divided_below =
              2.0 * std::max((source - anchor.place).norm(), farthest_phone(anchor.place)),
          .bounces = followed,
-         .stays = stays(field),
+         .stays = stays(field) && streams_fit,
          .share = anchor.share});
   }
 }

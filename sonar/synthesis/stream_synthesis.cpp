@@ -337,7 +337,7 @@ Piece piece_of(const ReverberationStreams& sea, const StreamBlock& block, const 
       take(0, own / 2 + 1, own / 2);
       for (std::size_t wave = 0; wave < part.slowness.size(); ++wave) {
         if (part.weight[noise][wave] == 0.0) continue;
-        find_lags(part.slowness[wave], part.curvature[wave], places, late);
+        find_lags(part.slowness[wave], part.length[wave], part.curvature[wave], places, late);
         for (std::size_t p = 0; p < phones.size(); ++p) {
           // An impulse stands in the middle of its step.
           const double delay = 0.5 * step + late[p];

@@ -23,10 +23,10 @@ struct PhonePlaces {
 };
 
 /// How much later than the reference point phones receive a wave whose fronts are spheres about the
-/// point R·u, u = −s/|s|: |s|·(|R·u − x| − R) [s]. \param curvature  1/R [1/m]
-inline void find_lags(const Vec3& slowness, double curvature, const PhonePlaces& at,
+/// point R·u, u = −s/|s|: |s|·(|R·u − x| − R) [s]. \param s  length of the slowness; that of a mean
+/// over directions that the phones do not tell apart is shorter [s/m]   \param curvature  1/R [1/m]
+inline void find_lags(const Vec3& slowness, double s, double curvature, const PhonePlaces& at,
                       std::span<double> lags) noexcept {
-  const double s = slowness.norm();
   const Vec3 towards = s > 0.0 ? Vec3(slowness / s) : Vec3::Zero();
   for (std::size_t p = 0; p < lags.size(); ++p) {
     // (|R·u − x|² − R²)/R = 2·s·x/|s| + |x|²/R, over (|R·u − x| + R)/R.

@@ -170,7 +170,7 @@ ExpectedPower::Kept ExpectedPower::kept_by(const Beam& beam, std::size_t part) c
     const double power = std::norm(of.weight[0][wave]) + std::norm(of.weight[1][wave]);
     response[wave].assign(beam.band.size(), 0.0);
     if (power == 0.0) continue;
-    find_lags(of.slowness[wave], of.curvature[wave], at, lags);
+    find_lags(of.slowness[wave], of.length[wave], of.curvature[wave], at, lags);
     for (std::size_t p = 0; p < n; ++p) lags[p] -= beam.steered[p];
     kept.late += power * std::accumulate(lags.begin(), lags.end(), 0.0) / count;
     all += power;

@@ -90,6 +90,8 @@ def rest_limit(s, p):
     What is towed follows astern of any course, so the speed is along the heading that the array has at rest.
     """
     s = still(plain(s))
+    if s["transmitter"].get("bearing_from") == "heading":  # a course would turn its beam
+        s["transmitter"].pop("bearing_from")
     first = ping(s)
     s2 = copied(s)
     who = p("who", ["target", "platform"])

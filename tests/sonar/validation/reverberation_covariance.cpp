@@ -286,6 +286,7 @@ TEST(ReverberationCovariance, TakesOverBeyondTwentyThousandReturns) {
   Scenario s = shallow_sea();
   s.reverberation.synthesis = ScattererSynthesis::automatic;
   s.reverberation.bottom = Lambert{};
+  s.reverberation.bottom_field.statistics.coherence_time = 100.0;  // which has to be remembered
   const PropagationPaths paths(s.environment, s.transect);
   const Pulse pulse(s.pulse);
   const BeamPattern pattern(s.transmitters[0], c / 1000.0);

@@ -62,14 +62,16 @@ Said said(const ReverberationStreams& sea, double delay, const std::vector<Vec3>
           Eigen::VectorXcd received = Eigen::VectorXcd::Zero(n);
           for (std::size_t wave = 0; wave < 2; ++wave)
             for (Eigen::Index p = 0; p < n; ++p) {
-              // A sphere about a point so far away that it is what its curvature says.
+              // A sphere about a point so far away that it is what its curvature says. The mean of
+              // slownesses on either side of a line tells how far along the line they point.
               const double radius = 1.0 / std::max(1e-9, part.curvature[wave]);
-              const Vec3 s = part.slowness[wave];
+              const double length = std::max(1e-9, part.length[wave]);
+              const Vec3 x = phones[std::size_t(p)];
               const double lag =
-                  s.isZero()
-                      ? 0.0
-                      : s.norm() *
-                            ((-radius * s.normalized() - phones[std::size_t(p)]).norm() - radius);
+                  length *
+                  (std::sqrt(radius * radius + 2.0 * radius * part.slowness[wave].dot(x) / length +
+                             x.squaredNorm()) -
+                   radius);
               received[p] += weight[wave] * std::polar(1.0, -2.0 * pi * frequency * lag);
             }
           all.covariance += power * received * received.adjoint();
@@ -235,6 +237,7 @@ TEST(ReverberationStreams, AreTheirIntensityThroughThePulse) {
   sea.blocks = {{.begin = 37, .end = 65, .first = 0, .last = 1}};  // 1.85 s to 3.25 s
   sea.streams = {{.entity = 7, .first = 0, .first_part = 0, .parts = 1}};
   ReverberationStreams::Part part{.slowness = {Vec3(1.0 / 1500.0, 0.0, 0.0), Vec3::Zero()},
+                                  .length = {1.0 / 1500.0, 0.0},
                                   .doppler = 1.0023};
   part.weight[0][0] = 1.0;
   sea.parts = {part};
