@@ -64,11 +64,11 @@ struct ReverberationCovariance {
   std::vector<std::complex<float>> columns;  ///< of all factors F, [rank × components] each
 };
 
-/// What of a covariance or of streams a ping draws.
+/// Keys of the draws that a ping makes of a covariance or of streams.
 struct CovarianceDraw {
   std::uint64_t seed = 1;
   std::uint32_t ping = 1;
-  /// In place of the ping, for what every ping of a transmitter receives alike.
+  /// Key in place of the ping, for what every ping of a transmitter receives alike.
   std::uint32_t lasting = ~std::uint32_t{0};
 };
 

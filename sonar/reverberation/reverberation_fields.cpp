@@ -359,8 +359,8 @@ void ReverberationFields::meet(ScatteringPart part, const ReverberationContext& 
       farthest = std::max(farthest, (reference + x.head<2>() - place).norm());
     return farthest;
   };
-  // Streams are held to a closed form where phones are far nearer to the array's middle than the
-  // ground is; a longer line receives what lasts in groups.
+  // Streams are held to a closed form where phones are far nearer to the array's reference point
+  // than the ground is; a longer line receives what lasts in groups.
   constexpr double near = 0.1;
   double furthest = 0.0;  // [m]
   for (const Vec3& x : context.geometry.phones(context.array))

@@ -488,9 +488,9 @@ TEST(ReverberationStreams, AFrozenSeaThatIsReceivedOnceIsAFreshOne) {
   EXPECT_EQ(received(frozen, true), received(frozen, false));
 }
 
-// Who lies still receives the same sums of a frozen sea with every ping: streams whose noise stays.
-// Beside a surface that does not stay, pings differ by what the surface alone does, to the streams
-// of 1e-5 of the power that are left out.
+// A sonar at rest receives the same sums of a frozen sea with every ping: the noise of streams
+// stays. Beside a surface that does not stay, pings differ by what the surface alone does, to the
+// streams of 1e-5 of the power that are left out.
 TEST(ReverberationStreams, AFrozenSeaStaysWhereNobodyMoves) {
   Scenario s = under_way();
   s.platforms[0].track.start.velocity.setZero();
