@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
+#include "raytrace/ocean/speed_extremes.h"
 
 namespace asdic::detail {
 namespace {
@@ -28,17 +29,7 @@ double squared_distance(const LegEnds& ends) {
 
 /// sin² of the angle, at the slowest depth, of the steepest wave that the water turns.
 double steepest_sine2(const Environment& ocean) noexcept {
-  double slow = std::numeric_limits<double>::infinity(), fast = 0.0;
-  const auto look = [&](double depth) {
-    const double c = ocean.water.at(depth).c;
-    slow = std::min(slow, c);
-    fast = std::max(fast, c);
-  };
-  constexpr int parts = 16;  // between the boundaries, for laws without samples
-  for (int i = 0; i <= parts; ++i)
-    look(std::lerp(ocean.surface.depth, ocean.bottom.depth, double(i) / parts));
-  for (const double depth : ocean.water.depths())
-    if (depth > ocean.surface.depth && depth < ocean.bottom.depth) look(depth);
+  const auto [slow, fast] = speed_extremes(ocean.water, ocean.surface.depth, ocean.bottom.depth);
   return (1.0 - slow / fast) * (1.0 + slow / fast);
 }
 

@@ -5,6 +5,7 @@
 
 #include "core/units.h"
 #include "raytrace/ocean/level_rays.h"
+#include "raytrace/ocean/speed_extremes.h"
 #include "raytrace/tracing/fan_splitting.h"
 #include "raytrace/tracing/neighbours.h"
 #include "raytrace/tracing/root_finder.h"
@@ -33,25 +34,56 @@ double closes_up_to(const BoundaryShape& shape, BoundaryKind kind) {
   return -1e300;
 }
 
-/// Tracing goes on behind the last column until the next boundary is met, mostly; and as far as
-/// there are slopes that can send a ray back.
-double beyond_last_column(const Environment& ocean, double last) {
-  const double bottom = ocean.bottom.shape ? ocean.bottom.shape->deepest() : ocean.bottom.depth;
-  const double top = ocean.surface.shape ? ocean.surface.shape->shallowest() : ocean.surface.depth;
-  double end = last + (bottom - top);
-  if (ocean.surface.shape)
-    end = std::max(end, closes_up_to(*ocean.surface.shape, BoundaryKind::surface));
-  if (ocean.bottom.shape)
-    end = std::max(end, closes_up_to(*ocean.bottom.shape, BoundaryKind::bottom));
-  return end;
+/// Water between the shallowest and the deepest place of the boundaries.
+struct WaterSpan {
+  double top, bottom;
+
+  explicit WaterSpan(const Environment& ocean)
+      : top(ocean.surface.shape ? ocean.surface.shape->shallowest() : ocean.surface.depth),
+        bottom(ocean.bottom.shape ? ocean.bottom.shape->deepest() : ocean.bottom.depth) {}
+  [[nodiscard]] double thickness() const noexcept { return bottom - top; }
+};
+
+/// The furthest that a ray goes beyond a range to which slopes send it back [m].
+///
+/// A bounce off a slope s changes the horizontal slowness ξ by at most 2s/c, and nothing else does
+/// where water does not vary with range. A ray that comes back after N bounces therefore has
+/// |ξ| ≤ 2sN/c all the time that it is beyond, which is |cos θ| = |ξ|c ≤ κ. It crosses the water at
+/// most N + 1 times, by κ/√(1 − κ²) of the thickness each. Infinity where κ does not make it steep.
+double turned_back_within(const RayTracer& tracer, const WaterSpan& water,
+                          const FanLimits& limits) {
+  const double bounces = double(limits.max_surface_bounces) + double(limits.max_bottom_bounces);
+  const double bends =
+      2.0 * (tracer.steepest_slope(BoundaryKind::surface) * limits.max_surface_bounces +
+             tracer.steepest_slope(BoundaryKind::bottom) * limits.max_bottom_bounces);
+  const Environment& ocean = tracer.environment();
+  if (bends == 0.0 || ocean.section) return bends == 0.0 ? 0.0 : infinity;
+  const auto [slowest, fastest] = speed_extremes(ocean.water, water.top, water.bottom);
+  constexpr double steep = 0.5;
+  const double kappa = bends * fastest / slowest;
+  if (!(kappa < steep)) return infinity;
+  return (bounces + 1.0) * water.thickness() * kappa / std::sqrt(1.0 - kappa * kappa);
 }
 
-/// And before the first.
-double before_first_column(const Environment& ocean, double first) {
-  double end = first;
-  for (const Boundary* boundary : {&ocean.surface, &ocean.bottom})
-    if (boundary->shape) end = std::min(end, boundary->shape->ranges().front());
-  return end - 1.0;
+/// Ranges between which rays are followed: from the first node, as far behind the last column as
+/// there are slopes that can send a ray back, and until the next boundary is met, mostly.
+struct FollowedRanges {
+  double from, to;  // [m]
+};
+FollowedRanges followed_ranges(const RayTracer& tracer, double first, double last,
+                               const FanLimits& limits) {
+  const Environment& ocean = tracer.environment();
+  const WaterSpan water(ocean);
+  const double back = turned_back_within(tracer, water, limits);
+  FollowedRanges ranges{.from = first, .to = last};
+  for (const auto kind : {BoundaryKind::surface, BoundaryKind::bottom}) {
+    const auto& shape = (kind == BoundaryKind::surface ? ocean.surface : ocean.bottom).shape;
+    if (!shape) continue;
+    ranges.from = std::min(ranges.from, shape->ranges().front());
+    ranges.to = std::max(ranges.to, closes_up_to(*shape, kind));
+  }
+  return {.from = std::max(ranges.from, first - back) - 1.0,
+          .to = std::max(std::min(ranges.to, last + back), last + water.thickness())};
 }
 
 struct Hit {
@@ -59,7 +91,7 @@ struct Hit {
   Arrival path;
 };
 
-TraceLimits trace_limits(const Environment& ocean, double source_range,
+TraceLimits trace_limits(const RayTracer& tracer, double source_range,
                          std::span<const ReceiverColumn> columns, const FanLimits& limits) {
   const double first = std::min(source_range, columns.front().range);
   const double last = std::max(source_range, columns.back().range);
@@ -68,9 +100,10 @@ TraceLimits trace_limits(const Environment& ocean, double source_range,
                     .max_surface_bounces = limits.max_surface_bounces,
                     .max_bottom_bounces = limits.max_bottom_bounces,
                     .faintest = limits.faintest};
-  trace.max_range = std::min(limits.max_range, beyond_last_column(ocean, last));
+  const FollowedRanges ranges = followed_ranges(tracer, first, last, limits);
+  trace.max_range = std::min(limits.max_range, ranges.to);
   trace.max_range = std::max(trace.max_range, last + 1.0);  // the edge of the box is in it
-  trace.min_range = std::max(limits.min_range, before_first_column(ocean, first));
+  trace.min_range = std::max(limits.min_range, ranges.from);
   return trace;
 }
 
@@ -180,7 +213,7 @@ std::vector<Arrivals> marching_eigenrays(const RayTracer& tracer, double source_
     if (std::abs(point.range - source_range) < least_range)
       point.range = source_range + least_range;
   const std::vector<ReceiverColumn> columns = make_columns(points);
-  const TraceLimits trace = trace_limits(tracer.environment(), source_range, columns, limits);
+  const TraceLimits trace = trace_limits(tracer, source_range, columns, limits);
   const FanSplitting<ColumnSearch> fan(limits.lowest, limits.highest);
   const auto work = [&] {
     return ColumnSearch(tracer, source_range, source_depth, trace, columns, limits.max_turns);

@@ -15,6 +15,10 @@ const Environment& RayTracer::environment() const noexcept { return ocean_->envi
 
 double RayTracer::frequency() const noexcept { return ocean_->frequency; }
 
+double RayTracer::steepest_slope(BoundaryKind kind) const noexcept {
+  return (kind == BoundaryKind::surface ? ocean_->surface : ocean_->bottom).steepest;
+}
+
 void RayTracer::trace(double source_range, double source_depth, double launch_elevation,
                       const TraceLimits& limits, RayTrajectory& out) const {
   tracing::March(*ocean_, limits, out).run(source_range, source_depth, launch_elevation);

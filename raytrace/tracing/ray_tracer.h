@@ -49,6 +49,8 @@ class RayTracer {
 
   [[nodiscard]] const Environment& environment() const noexcept;
   [[nodiscard]] double frequency() const noexcept;  ///< [Hz]
+  /// Magnitude of slope that no facet of a boundary exceeds; 0 of a flat one.
+  [[nodiscard]] double steepest_slope(BoundaryKind kind) const noexcept;
 
   /// Traces one ray from (source_range, source_depth). Angles beyond ±π/2 go to smaller ranges.
   /// \param out  its memory is reused

@@ -207,14 +207,25 @@ def alike_in_the_mean(a, b, s, share, what):
 
 
 def pressures(rows, hz):
-    """Paths at a frequency, and the roots of what is scattered about them; echoes with what is scattered, in the mean."""
+    """Paths at a frequency, and the roots of what is scattered about them; echoes with what is scattered, in the mean.
+
+    Rows within a nanosecond of one another, as surface and bottom paths about the middle of the water, come in an
+    order of rounding, so each leg's rows are put in the order of their delays and then of their pressures.
+    """
     if not rows or len(rows["delay"]) == 0:
         return np.zeros(0)
+    order = np.lexsort((rows["delay"], rows.get("leg", np.zeros(len(rows["delay"])))))
+    rows = {name: np.asarray(values)[order] for name, values in rows.items() if len(values) == len(order)}
     turned = np.exp(-2j * np.pi * hz * rows["delay"])
     if "level_db" in rows:
-        return 10 ** (rows["level_db"] / 20) * turned
-    return np.concatenate([(rows["amplitude_real"] + 1j * rows["amplitude_imag"]) * turned,
-                           np.sqrt(np.nan_to_num(rows["scattered"]))])
+        x, scattered = 10 ** (rows["level_db"] / 20) * turned, np.zeros(0)
+    else:
+        x = (rows["amplitude_real"] + 1j * rows["amplitude_imag"]) * turned
+        scattered = np.sqrt(np.nan_to_num(rows["scattered"]))
+    apart = np.cumsum(np.abs(np.diff(rows["delay"], prepend=rows["delay"][0])) > 1e-9)
+    key = np.round(x / np.abs(x).max(initial=1e-300), 6)
+    order = np.lexsort((key.imag, key.real, apart))
+    return np.concatenate([x[order], scattered[order[:len(scattered)]]])
 
 
 def field(rows, hz):
