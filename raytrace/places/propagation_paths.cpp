@@ -281,7 +281,8 @@ Arrivals PropagationPaths::search(const Vec3& from, const Vec3& to, double frequ
                                   const PathLimits& limits) const {
   if (const VolumeOcean* ocean = volume()) {
     VolumeSearchReport report;
-    Arrivals found = volume_eigenrays(VolumeTracer(*ocean, frequency), from, to, limits, &report);
+    Arrivals found = volume_eigenrays(VolumeTracer(*ocean, frequency), from, to, limits, &report,
+                                      search_plane(from, to, frequency, limits));
     if (report.given_up > 0) memory_->count_ended_search();
     return bounded(std::move(found), from, to, frequency, limits);
   }

@@ -191,6 +191,16 @@ Arrival arrival_of(const Root& root, const Vec3& from, const Vec3& to) {
   return path;
 }
 
+std::uint64_t key_of(std::span<const Bounce> bounces) {
+  std::uint64_t key = 0;
+  for (const Bounce& b : bounces) key = bounced_key(key, b.boundary);
+  return key;
+}
+
+Vec3 launched(const Arrival& path, const Vec3& from, const Vec3& to) {
+  return direction(separation(from, to).bearing + path.launch_deflection, path.launch_elevation);
+}
+
 /// The search in a fan for the roots of one receiver.
 class Search {
  public:
@@ -206,7 +216,7 @@ class Search {
         refine_(fan.tracer(), fan.from(), to, longest_path(fan.tracer().ocean(), fan.from(), to),
                 precision) {}
 
-  Arrivals operator()(const std::function<bool(double)>& told) {
+  Arrivals operator()(const std::function<bool(double)>& told, std::span<const Arrival> in_plane) {
     for (int row = 0; row < fan_.rows(); ++row) {
       const int columns = fan_.columns_of(row);
       for (int column = -columns; column < columns; ++column) {
@@ -223,6 +233,9 @@ class Search {
       look(Cell(cells_[i]));
     }
     try_later(told);
+    constexpr double beside = 0.004;  // of a path in the plane [rad]
+    for (const Arrival& path : in_plane)
+      try_root(launched(path, from_, to_), path.bounces.size(), key_of(path.bounces), beside);
     Arrivals found;
     for (const Root& root : roots_) {
       Arrival path = arrival_of(root, from_, to_);
@@ -613,26 +626,21 @@ class Search {
   std::vector<Guess> guesses_;
 };
 
-std::uint64_t key_of(std::span<const Bounce> bounces) {
-  std::uint64_t key = 0;
-  for (const Bounce& b : bounces) key = bounced_key(key, b.boundary);
-  return key;
-}
-
 }  // namespace
 }  // namespace volume
 
 Arrivals volume_eigenrays(const VolumeFan& fan, const Vec3& to, VolumeSearchReport* report,
-                          const VolumePrecision& precision,
-                          const std::function<bool(double)>& told) {
+                          const VolumePrecision& precision, const std::function<bool(double)>& told,
+                          std::span<const Arrival> in_plane) {
   VolumeSearchReport own;
-  return volume::Search(fan, to, precision, report != nullptr ? *report : own)(told);
+  return volume::Search(fan, to, precision, report != nullptr ? *report : own)(told, in_plane);
 }
 
 Arrivals volume_eigenrays(const VolumeTracer& tracer, const Vec3& from, const Vec3& to,
-                          const PathLimits& limits, VolumeSearchReport* report) {
+                          const PathLimits& limits, VolumeSearchReport* report,
+                          std::span<const Arrival> in_plane) {
   const VolumeFan fan(tracer, from, {&to, 1}, limits);
-  Arrivals found = volume_eigenrays(fan, to, report);
+  Arrivals found = volume_eigenrays(fan, to, report, {}, {}, in_plane);
   if (report != nullptr) report->rays += fan.rays();
   return found;
 }
@@ -642,8 +650,7 @@ std::optional<Arrival> followed_volume_path(const VolumeTracer& tracer, const Ar
   constexpr double furthest_turn = 0.02;
   volume::Refinement refine(tracer, from, to, longest_path(tracer.ocean(), from, to), {});
   std::size_t traced = 0;
-  const double bearing = separation(from, to).bearing + path.launch_deflection;
-  const auto root = refine(direction(bearing, path.launch_elevation), path.bounces.size(),
+  const auto root = refine(volume::launched(path, from, to), path.bounces.size(),
                            volume::key_of(path.bounces), furthest_turn, traced);
   if (!root) return {};
   const VolumeHistory& h = root->pass.history;
@@ -660,8 +667,7 @@ std::vector<Vec3> volume_track(const VolumeTracer& tracer, const Arrival& path, 
                             .tolerance = 1e-4,
                             .losses = false};
   VolumeRay ray;
-  const double bearing = separation(from, to).bearing + path.launch_deflection;
-  tracer.trace(from, direction(bearing, path.launch_elevation), to, limits, ray, true);
+  tracer.trace(from, volume::launched(path, from, to), to, limits, ray, true);
   return ray.track;
 }
 

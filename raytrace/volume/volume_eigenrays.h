@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <span>
 
 #include "raytrace/ocean/arrivals.h"
 #include "raytrace/ocean/path_limits.h"
@@ -35,16 +36,21 @@ struct VolumePrecision {
 /// Newton's method on both angles follows until the miss is below 10 µm.
 /// docs/theory/three-dimensional-rays.md
 /// \param limits  max_vertices, diffraction and the limits of delay mean nothing here
+/// \param in_plane  paths in the vertical plane of both places, from which Newton's method starts
+///                  as well: of families so thin that cells miss them, where rays are hardly turned
+///                  out of it
 [[nodiscard]] Arrivals volume_eigenrays(const VolumeTracer& tracer, const Vec3& from,
                                         const Vec3& to, const PathLimits& limits,
-                                        VolumeSearchReport* report = nullptr);
+                                        VolumeSearchReport* report = nullptr,
+                                        std::span<const Arrival> in_plane = {});
 
 /// The same in a fan that many receivers share: the fan's rays are not counted.
 /// \param told  the share that is looked at; false: no more (Interrupted is thrown)
 [[nodiscard]] Arrivals volume_eigenrays(const VolumeFan& fan, const Vec3& to,
                                         VolumeSearchReport* report,
                                         const VolumePrecision& precision = {},
-                                        const std::function<bool(double)>& told = {});
+                                        const std::function<bool(double)>& told = {},
+                                        std::span<const Arrival> in_plane = {});
 
 /// The same path after its ends have moved by metres. Null if no ray of the same history is found
 /// there: then it has to be searched for.
