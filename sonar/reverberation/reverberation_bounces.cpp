@@ -14,6 +14,7 @@ constexpr std::size_t segments = 32;  // of the record
 constexpr int rings = 64, first_try = 8;
 constexpr int most_ever = 1 << 14;     // bounces that are tried at most in layered water
 constexpr int bearings_looked_at = 8;  // and planes, over slopes
+constexpr int least_judged = 24;       // bounces by which given numbers are judged over slopes
 
 /// Adds what comes back from rings around the middle of two ends, by the bounces of either leg.
 /// \param most  of the bounces
@@ -41,6 +42,16 @@ void look(const ScatteringSheet& sheet, double reach, int most, ReceivedBounces&
     }
 }
 
+/// Bounces that are tried. Over slopes each try marches its fans, and in a duct every one of them
+/// again all rays that strike nothing. So numbers of the settings are judged by one try.
+BounceSearch tries(const PropagationSettings& settings, bool layered) {
+  if (layered) return {.first = first_try, .most = most_ever};
+  if (!in_numbers(settings)) return {.first = first_try, .most = most_over_slopes};
+  const int asked = std::max(*settings.max_surface_bounces, *settings.max_bottom_bounces);
+  const int most = std::clamp(2 * asked, least_judged, most_over_slopes);
+  return {.first = most, .most = most};
+}
+
 /// What a segment may miss, 10 dB under the noise in the pulse's band, in units of what look() adds
 /// up: of a source of 1 at 1 m that sounds for a second.
 double inaudible(const NoiseSettings& noise, const ReverberationContext& context) {
@@ -62,12 +73,11 @@ Bounces reverberation_bounces(const ScatteringPart& part, const SheetEnds& ends,
   const double reach = fan.max_range;
   const double max_delay = fan.limits.max_delay, home_slowness = fan.limits.home_slowness;
   fan.spacing = reach / rings;
-  fan.sectors = bearings_looked_at;
-  const BounceSearch search{.first = first_try,
-                            .most = layered ? most_ever : most_over_slopes,
-                            .segments = segments,
-                            .latest = context.latest,
-                            .floor = inaudible(scenario.noise, context)};
+  fan.sectors = in_numbers(settings) ? bearings_looked_at / 2 : bearings_looked_at;
+  BounceSearch search = tries(settings, layered);
+  search.segments = segments;
+  search.latest = context.latest;
+  search.floor = inaudible(scenario.noise, context);
   return search_bounces(settings, search, [&](const PathLimits& limits, ReceivedBounces& received) {
     fan.limits = limits;
     fan.limits.max_delay = max_delay;
