@@ -359,12 +359,13 @@ void ReverberationFields::meet(ScatteringPart part, const ReverberationContext& 
       farthest = std::max(farthest, (reference + x.head<2>() - place).norm());
     return farthest;
   };
-  // Streams are held to a closed form where phones are far nearer to the array's reference point
-  // than the ground is; a longer line receives what lasts in groups.
+  // Streams are held to a closed form where phones are far nearer to the place that receives than
+  // the ground is; a longer line receives what lasts in groups.
   constexpr double near = 0.1;
+  const Vec3 reference = context.geometry.reference_place(context.array).position;
   double furthest = 0.0;  // [m]
   for (const Vec3& x : context.geometry.phones(context.array))
-    furthest = std::max(furthest, x.norm());
+    furthest = std::max(furthest, (reference + x - ends.receiver.position).norm());
   const double height = std::abs(depth(ends.receiver.position) - ends.receiver.position.z());
   const bool streams_fit = context.plane_waves || furthest < near * height;
   for (const Anchor& anchor : anchors) {

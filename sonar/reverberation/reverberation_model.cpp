@@ -93,12 +93,16 @@ std::vector<std::vector<Vec3>> any_heading(std::span<const Vec3> phones, double 
   return {cross};
 }
 
-/// Doppler shifts between which a sweep is itself, but for a delay: a hundredth of its band to
-/// either side, where it correlates with itself by 0.99. Nothing of other pulses [Hz]
+/// Width of Doppler shifts within which a sweep is itself, but for a delay [Hz]. A hundredth of its
+/// band to either side, it correlates with itself by 0.99. A linear sweep's rate changes as well,
+/// by 2ν/f, which turns its ends against its middle by (π/2)·BT·ν/f: 0.99 again at 0.47 rad, so
+/// that ν is at most 0.3·f/(BT) to either side. Nothing of other pulses.
 double doppler_tolerance(const Pulse& pulse) noexcept {
   const AnyWaveform& waveform = pulse.settings().waveform;
-  const bool sweep = std::holds_alternative<Lfm>(waveform) || std::holds_alternative<Hfm>(waveform);
-  return sweep ? 0.02 * pulse.bandwidth_99() : 0.0;
+  const double band = pulse.bandwidth_99();
+  if (std::holds_alternative<Hfm>(waveform)) return 0.02 * band;
+  if (!std::holds_alternative<Lfm>(waveform)) return 0.0;
+  return std::min(0.02 * band, 0.6 * pulse.centre_frequency() / (band * pulse.duration()));
 }
 
 /// Who receives them.
