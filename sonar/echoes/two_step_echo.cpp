@@ -91,6 +91,74 @@ void add_to(Baseband& all, Baseband&& more) {
                    std::plus<>{});
 }
 
+/// Sum of sounds, each synthesised in the part of a record that it reaches.
+class SumOfSounds {
+ public:
+  SumOfSounds(const Recording& recording, double max_doppler, std::span<const Vec3> phones)
+      : recording_(recording), max_doppler_(max_doppler), phones_(phones) {}
+
+  void add(const BandLimitedPulse& wave, std::span<const Return> returns) {
+    if (!wave_) wave_ = wave;
+    Baseband piece = baseband_of(wave, reached(wave, returns), max_doppler_, returns, phones_);
+    const auto same = std::find_if(parts_.begin(), parts_.end(), [&](const Baseband& part) {
+      return part.start == piece.start && part.recorded == piece.recorded &&
+             part.samples == piece.samples && part.sample_rate == piece.sample_rate &&
+             part.carrier == piece.carrier;
+    });
+    if (same == parts_.end())
+      parts_.push_back(std::move(piece));
+    else
+      add_to(*same, std::move(piece));
+  }
+  /// \return all of them over the whole record; without channels: nothing was added
+  [[nodiscard]] Baseband whole() const {
+    if (!wave_) return {};
+    Baseband all = baseband_of(*wave_, recording_, max_doppler_, {}, phones_);
+    for (const Baseband& part : parts_)
+      if (part.start == all.start && part.samples == all.samples && part.carrier == all.carrier)
+        add_to(all, Baseband(part));
+      else
+        add_resampled(part, all);
+    return all;
+  }
+
+ private:
+  /// Part of the record in which phones receive a wave, in steps, so that sounds of about the same
+  /// time share it; all of the record if that is hardly longer.
+  [[nodiscard]] Recording reached(const BandLimitedPulse& wave,
+                                  std::span<const Return> returns) const {
+    double first = infinity, last = -infinity;
+    const auto at = [&](const Return& r, const Vec3& phone) {
+      const double delay = r.delay + r.slowness.dot(phone);
+      first = std::min(first, delay);
+      last = std::max(last, delay);
+    };
+    for (const Return& r : returns)
+      if (r.channel == Return::all_channels)
+        for (const Vec3& phone : phones_) at(r, phone);
+      else
+        at(r, phones_[static_cast<std::size_t>(r.channel)]);
+    const double half = wave.half_duration() / (1.0 - max_doppler_), rate = recording_.sample_rate;
+    const double step = std::ceil(0.25 * half * rate), total = double(recording_.samples);
+    constexpr double worth = 0.6;  // of the record
+    const double begin = std::floor((first - half - recording_.start) * rate / step) * step,
+                 end = std::ceil((last + half - recording_.start) * rate / step + 1.0) * step;
+    const double from = std::clamp(begin, 0.0, total - 1.0),
+                 to = std::clamp(end, from + 1.0, total);
+    if (!(to - from < worth * total)) return recording_;
+    Recording part = recording_;
+    part.start += from / rate;
+    part.samples = static_cast<std::size_t>(to - from);
+    return part;
+  }
+
+  Recording recording_;
+  double max_doppler_;
+  std::span<const Vec3> phones_;
+  std::optional<BandLimitedPulse> wave_;  // the first: all are on one grid
+  std::vector<Baseband> parts_;
+};
+
 /// One path of a leg, for what leaves at one moment.
 struct LegPath {
   EchoPath received;  // delay since the ping
@@ -197,12 +265,12 @@ class TwoSteps {
 
   Baseband receive() const {
     const Baseband there = at_target();
-    Baseband received;
-    if (there.channels == 0) return received;
+    if (there.channels == 0) return {};
+    SumOfSounds received(recording_, max_doppler_, receivers_.phones);
     if (band_.home.empty()) add(sounds_of(there), context_.frequency, received);
     for (const BandPart& part : band_.home)
       add(sounds_of(through(there, part.filter)), part.frequency, received);
-    return received;
+    return received.whole();
   }
 
  private:
@@ -403,7 +471,7 @@ class TwoSteps {
 
   /// Adds what is received of the sounds at the target: by paths of each phone's own, or by those
   /// of the reference point.
-  void add(const std::vector<Sound>& struck, double frequency, Baseband& received) const {
+  void add(const std::vector<Sound>& struck, double frequency, SumOfSounds& received) const {
     if (struck.empty()) return;
     const MovingPaths moving = paths_at(frequency);
     const int array = context_.array;
@@ -442,9 +510,7 @@ class TwoSteps {
             }
           }
           for (std::size_t place = 0; place < waves.size(); ++place)
-            if (!of_place[place].empty())
-              add_to(received, baseband_of(*waves[place], recording_, max_doppler_, of_place[place],
-                                           receivers_.phones));
+            if (!of_place[place].empty()) received.add(*waves[place], of_place[place]);
         });
   }
 
