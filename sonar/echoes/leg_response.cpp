@@ -93,17 +93,22 @@ std::vector<std::complex<double>> SampledResponse::at(double frequency) const {
   return sums;
 }
 
-/// Adds up the coefficients of its Chebyshev polynomials, the highest first.
-std::size_t SampledResponse::degree() const {
-  const std::size_t cells = values.size() - 1, responses = values.front().size();
+double SampledResponse::energy() const {
   double greatest = 0.0;
   for (const auto& at_node : values) {
     double energy = 0.0;
     for (const std::complex<double>& value : at_node) energy += std::norm(value);
     greatest = std::max(greatest, energy);
   }
+  return greatest;
+}
+
+/// Adds up the coefficients of its Chebyshev polynomials, the highest first.
+std::size_t SampledResponse::degree(double loudest) const {
+  const std::size_t cells = values.size() - 1, responses = values.front().size();
+  const double greatest = std::max(energy(), loudest);
   const ResponseError tolerated;
-  const double most = 0.5 * (cells < 32 ? tolerated.few : tolerated.many);
+  const double most = cells < 32 ? 0.5 * tolerated.few : tolerated.many;
   double left_out = 0.0;
   for (std::size_t j = cells; j > 0; --j) {
     std::vector<std::complex<double>> coefficient(responses);

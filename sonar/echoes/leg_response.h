@@ -31,8 +31,11 @@ struct SampledResponse {
                        ///< largest value; both are root sums of squares over the responses
 
   [[nodiscard]] std::vector<std::complex<double>> at(double frequency) const;
-  /// Degree of a polynomial that is as good: it leaves out half of what ResponseError tolerates.
-  [[nodiscard]] std::size_t degree() const;
+  /// Greatest energy at a node: sum of squares over the responses.
+  [[nodiscard]] double energy() const;
+  /// Degree of a polynomial that leaves out what ResponseError tolerates: of many nodes all of it,
+  /// of a few half. \param loudest  energy of the loudest leg beside it, of which that is a share
+  [[nodiscard]] std::size_t degree(double loudest = 0.0) const;
 };
 
 /// Samples responses at Chebyshev–Lobatto points, and doubles their number until they predict four

@@ -58,17 +58,21 @@ double difference(const PropagationPaths& paths, const ArrivedLeg& reference,
 
 }  // namespace
 
+bool is_alike(const EchoContext& context, const ArrivedLeg& reference,
+              const ArrivedLeg& elsewhere) {
+  double highest = context.frequency;
+  if (const Pulse* pulse = context.pulse; pulse != nullptr)
+    highest = pulse->centre_frequency() + 0.5 * pulse->bandwidth_99();
+  return difference(context.paths, reference, elsewhere, highest) <= tolerable;
+}
+
 bool is_alike_at_phones(const EchoContext& context, const ArrivedLeg& reference,
                         const std::function<ArrivedLeg(int phone)>& at_phone) {
   const std::vector<Vec3>& phones = context.geometry.phones(context.array);
   if (phones.size() < 2 || !is_to_be_judged(context.paths, reference.leg.arrivals)) return true;
-  double highest = context.frequency;
-  if (const Pulse* pulse = context.pulse; pulse != nullptr)
-    highest = pulse->centre_frequency() + 0.5 * pulse->bandwidth_99();
   const std::set<int> outer = outermost(phones);
-  return std::all_of(outer.begin(), outer.end(), [&](int phone) {
-    return difference(context.paths, reference, at_phone(phone), highest) <= tolerable;
-  });
+  return std::all_of(outer.begin(), outer.end(),
+                     [&](int phone) { return is_alike(context, reference, at_phone(phone)); });
 }
 
 }  // namespace asdic::detail

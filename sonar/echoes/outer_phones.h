@@ -21,4 +21,9 @@ struct ArrivedLeg {
 [[nodiscard]] bool is_alike_at_phones(const EchoContext& context, const ArrivedLeg& reference,
                                       const std::function<ArrivedLeg(int phone)>& at_phone);
 
+/// Whether the paths to a place, as plane waves, describe the sound at another place to −30 dB at
+/// the highest received frequency.
+[[nodiscard]] bool is_alike(const EchoContext& context, const ArrivedLeg& reference,
+                            const ArrivedLeg& elsewhere);
+
 }  // namespace asdic::detail

@@ -1,15 +1,19 @@
 #include "sonar/echoes/two_step_echo.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
+#include <numeric>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "core/geometry.h"
 #include "core/mixed_bits.h"
 #include "sonar/echoes/leg_response.h"
 #include "sonar/echoes/one_leg.h"
+#include "sonar/echoes/outer_phones.h"
 #include "sonar/echoes/target_response.h"
 #include "sonar/paths/moving_paths.h"
 #include "sonar/scenario/carried.h"
@@ -263,9 +267,10 @@ class TwoSteps {
         draws_(draws),
         places_(target_.highlights.empty() ? 1 : target_.highlights.size()) {}
 
-  Baseband receive() const {
+  Baseband receive() {
     const Baseband there = at_target();
     if (there.channels == 0) return {};
+    group_phones(there.start + 0.5 * static_cast<double>(there.recorded) / there.sample_rate);
     SumOfSounds received(recording_, max_doppler_, receivers_.phones);
     if (band_.home.empty()) add(sounds_of(there), context_.frequency, received);
     for (const BandPart& part : band_.home)
@@ -303,6 +308,88 @@ class TwoSteps {
     if (!receivers_.by_themselves)
       for (const Vec3& phone : receivers_.phones) furthest = std::max(furthest, phone.norm());
     return furthest;
+  }
+
+  /// Phones that receive the paths to one of them, as plane waves.
+  struct Group {
+    int leader = -1;  // number of a phone; −1: the reference point
+    std::vector<int> members = {Return::all_channels};  // channels
+  };
+
+  /// Finds out which phones may share paths: those that would each have paths of their own, because
+  /// waves change over the array's depths, but lie at one depth and receive alike to −30 dB.
+  /// \param sent  time at which the sound leaves the target, since the ping [s]
+  void group_phones(double sent) {
+    groups_.clear();
+    if (!receivers_.by_themselves) {
+      groups_.emplace_back();
+      return;
+    }
+    const std::size_t all =
+        std::min(receivers_.phones.size(), geometry_.phones(context_.array).size());
+    if (receivers_.phones.size() > all)
+      groups_.push_back({.leader = -1, .members = {static_cast<int>(all)}});
+    std::vector<int> left(all);
+    std::iota(left.begin(), left.end(), 0);
+    const auto depth = [&](int n) { return receivers_.phones[static_cast<std::size_t>(n)].z(); };
+    const bool exact = scenario_.propagation.exact_per_phone || !context_.paths.layered();
+    std::stable_sort(left.begin(), left.end(), [&](int a, int b) { return depth(a) < depth(b); });
+    for (auto first = left.begin(), last = first; first != left.end(); first = last) {
+      constexpr double level = 1e-6;  // [m]
+      last = std::find_if(first, left.end(), [&](int n) {
+        return exact ? n != *first : depth(n) - depth(*first) > level;
+      });
+      group(sent, {first, last});
+    }
+  }
+
+  /// Groups phones at one depth, halving them along their greatest extent until they are alike.
+  void group(double sent, std::vector<int> phones) {
+    const auto place = [&](int n) { return receivers_.phones[static_cast<std::size_t>(n)]; };
+    const auto extent = [&](int axis) {
+      const auto [least, most] =
+          std::minmax_element(phones.begin(), phones.end(),
+                              [&](int a, int b) { return place(a)[axis] < place(b)[axis]; });
+      return std::array{*least, *most};
+    };
+    const std::array east = extent(0), north = extent(1);
+    const bool along =
+        place(east[1]).x() - place(east[0]).x() > place(north[1]).y() - place(north[0]).y();
+    std::stable_sort(phones.begin(), phones.end(), [&](int a, int b) {
+      return along ? place(a).x() < place(b).x() : place(a).y() < place(b).y();
+    });
+    const auto middle = phones.begin() + std::ssize(phones) / 2;
+    if (phones.size() < 2 || share_paths(sent, *middle, {east[0], east[1], north[0], north[1]})) {
+      groups_.push_back({*middle, phones});
+      return;
+    }
+    group(sent, {phones.begin(), middle});
+    group(sent, {middle, phones.end()});
+  }
+
+  /// Whether others move with a phone and receive as it does.
+  bool share_paths(double sent, int leader, std::set<int> others) const {
+    others.erase(leader);
+    const Carried receiver = geometry_.receiver(context_.array, leader);
+    const MovingPaths moving = paths_at(context_.frequency);
+    const auto arrived = [&](const Carried& at) {
+      Way way = moving.way(target_at(sent).position, sent, at.track, at.offset);
+      return ArrivedLeg{std::move(way.leg), way.end.position};
+    };
+    const auto beside = [&](const Carried& at, double since) -> Vec3 {
+      const double time = geometry_.time() + since;
+      return at.at(time).position - receiver.at(time).position;
+    };
+    const ArrivedLeg reference = arrived(receiver);
+    return std::all_of(others.begin(), others.end(), [&](int n) {
+      constexpr double stays = 1e-6;  // [m]
+      const Carried phone = geometry_.receiver(context_.array, n);
+      const Vec3 apart = receivers_.phones[static_cast<std::size_t>(n)] -
+                         receivers_.phones[static_cast<std::size_t>(leader)];
+      return (beside(phone, sent) - apart).norm() < stays &&
+             (beside(phone, latest_) - apart).norm() < stays &&
+             is_alike(context_, reference, arrived(phone));
+    });
   }
 
   /// Segments of a sound along legs of one sender; none: it need not be cut.
@@ -475,14 +562,13 @@ class TwoSteps {
     if (struck.empty()) return;
     const MovingPaths moving = paths_at(frequency);
     const int array = context_.array;
-    const bool own = receivers_.by_themselves;
     const std::uint64_t ends =
         mixed(target_identity(scenario_, index_), mixed(2, static_cast<std::uint64_t>(array)));
     std::vector<MovingLeg> legs;
-    for (std::size_t n = 0; n < (own ? receivers_.phones.size() : 1); ++n)
+    for (const Group& group : groups_)
       legs.emplace_back(
           context_, moving, with_waves(), [&](double since) { return target_at(since); },
-          geometry_.receiver(array, own ? static_cast<int>(n) : -1), ends, draws_);
+          geometry_.receiver(array, group.leader), ends, draws_);
     for_each_piece(
         struck,
         cuts(legs, struck.front(), course_changes(target_.track),
@@ -494,18 +580,22 @@ class TwoSteps {
           for (std::size_t n = 0; n < legs.size(); ++n) {
             const std::vector<LegPath> paths = legs[n].at(moment);
             if (paths.empty()) continue;
-            const Vec3 x = own ? receivers_.phones[n] : Vec3(Vec3::Zero());
+            const int leader = groups_[n].leader;
+            const Vec3 x = leader < 0 ? Vec3(Vec3::Zero())
+                                      : receivers_.phones[static_cast<std::size_t>(leader)];
             for (const Glint& glint : seen(paths.front().received.response.bearing, moment)) {
               const auto place = static_cast<std::size_t>(std::max(glint.highlight, 0));
               if (!waves[place]) continue;
               for (const LegPath& path : paths) {
                 Return r = leaving_at(path, middle, moment);
-                if (!own) r.slowness += path.aside.of(glint.offset);
+                r.slowness += path.aside.of(glint.offset);
                 r.delay += path.lag.dot(glint.offset) - r.slowness.dot(x);
                 r.amplitude =
                     path.received.response.without_pattern * glint.amplitude * struck[place].scale;
-                r.channel = own ? static_cast<int>(n) : Return::all_channels;
-                of_place[place].push_back(r);
+                for (const int channel : groups_[n].members) {
+                  r.channel = channel;
+                  of_place[place].push_back(r);
+                }
               }
             }
           }
@@ -540,7 +630,8 @@ class TwoSteps {
   double latest_;  // end of the record [s]
   PathLimits limits_;
   const TwoStepBand& band_;
-  SeaDraws& draws_;     // of both legs
+  SeaDraws& draws_;  // of both legs
+  std::vector<Group> groups_;
   std::size_t places_;  // number of the target's highlights, or 1
 };
 
@@ -565,17 +656,16 @@ TwoStepSound two_step_sound(const EchoContext& context, const ManyEchoes& many,
   const auto peak_of = [](const Baseband& sound, std::size_t channel) {
     return sound.channels > 0 ? largest_envelope(sound, channel) : 0.0;
   };
-  if (!context.listens || many.at_phones != own_peak) {
-    TwoStepSound found;
+  TwoStepSound found;
+  if (!context.listens) {
     found.peak = peak_of(
         own_peak ? received_at({phones.front()}, true) : received_at({Vec3::Zero()}, false), 0);
-    if (context.listens) found.received = received_at(phones, many.at_phones);
     return found;
   }
   // The reference point is one phone more.
   std::vector<Vec3> places = phones;
   if (!own_peak) places.emplace_back(Vec3::Zero());
-  TwoStepSound found{.received = received_at(places, many.at_phones)};
+  found.received = received_at(places, many.at_phones || own_peak);
   Baseband& all = found.received;
   found.peak = peak_of(all, own_peak ? 0 : phones.size());
   if (all.channels > 0) {

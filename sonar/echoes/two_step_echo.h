@@ -11,7 +11,9 @@ namespace asdic::detail {
 /// Which of an array's phones receive echoes in two steps.
 struct TwoStepReceivers {
   std::span<const Vec3> phones;  ///< [n] from the array's reference point [m]
-  bool by_themselves = false;    ///< each by paths of its own, the first n of the array
+  /// By paths of their own, or of a phone beside them that receives alike: the first phones of the
+  /// array and, if there are more, the reference point.
+  bool by_themselves = false;
 };
 
 /// The echoes of a target whose pairs of paths are too many: first the sound at each of its

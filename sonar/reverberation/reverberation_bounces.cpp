@@ -14,7 +14,6 @@ constexpr std::size_t segments = 32;  // of the record
 constexpr int rings = 64, first_try = 8;
 constexpr int most_ever = 1 << 14;     // bounces that are tried at most in layered water
 constexpr int bearings_looked_at = 8;  // and planes, over slopes
-constexpr int least_judged = 24;       // bounces by which given numbers are judged over slopes
 
 /// Adds what comes back from rings around the middle of two ends, by the bounces of either leg.
 /// \param most  of the bounces
@@ -48,7 +47,7 @@ BounceSearch tries(const PropagationSettings& settings, bool layered) {
   if (layered) return {.first = first_try, .most = most_ever};
   if (!in_numbers(settings)) return {.first = first_try, .most = most_over_slopes};
   const int asked = std::max(*settings.max_surface_bounces, *settings.max_bottom_bounces);
-  const int most = std::clamp(2 * asked, least_judged, most_over_slopes);
+  const int most = std::clamp(2 * asked, fewest_bounces + 1, most_over_slopes);
   return {.first = most, .most = most};
 }
 
