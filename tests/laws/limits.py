@@ -87,7 +87,8 @@ def narrow_is_wide(s, p):
 def rest_limit(s, p):
     """A speed of a nanometre a second is none. Doppler shifts are 1e-12; phases change by k·v·t = 1e-6·f/1e6.
 
-    What is towed follows astern of any course, so the speed is along the heading that the array has at rest.
+    What is towed follows astern of any course, so the speed is along the heading that the array has at rest. Over slopes
+    plane waves serve the phones of what rests to −30 dB (docs/theory/echoes.md, Phones), and two steps what moves.
     """
     s = still(plain(s))
     if s["transmitter"].get("bearing_from") == "heading":  # a course would turn its beam
@@ -97,7 +98,9 @@ def rest_limit(s, p):
     who = p("who", ["target", "platform"])
     course = math.radians(s["array"][0].get("heading_deg", 45.0))
     s2[who][0]["velocity"] = [1e-9 * math.sin(course), 1e-9 * math.cos(course), 0.0]
-    alike(first, ping(s2), s, 1e-3, f"{who} at 1e-9 m/s")
+    e = s["environment"]
+    slopes = "area" in e or e["sound_speed"]["kind"] == "section" or any("shape" in e.get(b, {}) for b in ("surface", "bottom"))
+    alike(first, ping(s2), s, 0.0316 if slopes else 1e-3, f"{who} at 1e-9 m/s")
 
 
 @law

@@ -44,7 +44,9 @@ def turned(s, degrees):
     if "offset" in t:
         t["offset"] = turn(t["offset"])
     if t.get("kind") in ("projectors", "table"):
-        if t.get("bearing_from", "north") == "north":
+        ship = next(one for one in s["platform"] if one["name"] == t["platform"])
+        rests = not any(ship.get("velocity", [])) and "waypoints" not in ship  # heads north however the world turns
+        if t.get("bearing_from", "north") == "north" or rests:
             t["bearing_deg"] = t.get("bearing_deg", 0.0) + degrees
             for one in t.get("projector", ()):
                 one["offset"] = turn(one["offset"])
@@ -217,7 +219,8 @@ def continuous_in_place(s, p):
     z = s2["target"][0]["position"]
     z[axis] += d if axis < 2 or z[2] > s["platform"][0]["position"][2] else -d
     second = ping(s2)
-    if bends(s) and (warned(first, "waves", "caustic") or warned(second, "waves", "caustic")):
+    of_waves = ("waves", "caustic", "changes faster across the pulse")
+    if bends(s) and (warned(first, *of_waves) or warned(second, *of_waves)):
         raise Silent("warned")
     share = 2 * 2 * math.pi * d / wave * 1.07 + 2 * d / max(3 * wave, 1.0) + 0.02 + 0.026
     alike(first, second, s, share, f"target moved by {d:g} m")
