@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <unordered_map>
@@ -98,12 +99,12 @@ class WideBand {
     nepers_ = 0.5 * longest *
               std::abs(nepers_per_metre(context, centre_ + half_width_) -
                        nepers_per_metre(context, std::max(1.0, centre_ - half_width_)));
-    // Of a leg that is faint beside another one less matters.
-    std::array<double, 2> loudest = {};
+    // Of a leg that is faint beside another one of its target less matters.
+    std::map<int, std::array<double, 2>> loudest;
     for (const EchoPath& path : paths)
       for (std::size_t i = 0; i < path.legs.size(); ++i)
         if (const SampledResponse* leg = legs_.of(path.legs[i]))
-          loudest[i] = std::max(loudest[i], leg->energy());
+          loudest[path.target][i] = std::max(loudest[path.target][i], leg->energy());
     std::size_t degree = 0;
     std::unordered_map<const SampledResponse*, std::size_t> known;
     for (const EchoPath& path : paths) {
@@ -111,7 +112,7 @@ class WideBand {
       for (std::size_t i = 0; i < path.legs.size(); ++i)
         if (const SampledResponse* leg = legs_.of(path.legs[i])) {
           const auto [found, is_new] = known.try_emplace(leg);
-          if (is_new) found->second = leg->degree(loudest[i]);
+          if (is_new) found->second = leg->degree(loudest[path.target][i]);
           const std::size_t own = found->second;
           sum += own;
           degrees_[i] = std::max(degrees_[i], own);
@@ -141,11 +142,17 @@ class WideBand {
   /// Nodes for absorption and a pattern, and as many more as the degree of the legs: of a row of
   /// numbers, so that the next ping asks for waves at the same frequencies.
   [[nodiscard]] BandNodes nodes_for(double nepers, double delay, std::size_t degree) const {
-    constexpr std::size_t step = 4;
-    if (degree == 0) return band_nodes(centre_, half_width_, nepers, delay);
-    // Beside the legs these need be no more exact than they are.
+    const BandNodes nodes = band_nodes(centre_, half_width_, nepers, delay);
+    if (degree == 0) return nodes;
+    // Beside many nodes for the legs, each of which costs as much as the centre, those for losses
+    // and pattern need be no more exact than these.
+    constexpr std::size_t few = 16;
+    const bool many = degree > few;
+    const std::size_t step = many ? 4 : 8;
     const std::size_t least =
-        asdic::detail::nodes_for(nepers, pi * half_width_ * delay, ResponseError{}.few) + degree;
+        degree +
+        (many ? asdic::detail::nodes_for(nepers, pi * half_width_ * delay, ResponseError{}.few)
+              : nodes.frequencies.size());
     return chebyshev_nodes(centre_, half_width_,
                            least <= step ? least : (least + step - 1) / step * step);
   }

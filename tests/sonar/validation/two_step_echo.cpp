@@ -292,6 +292,47 @@ TEST(TwoStepEcho, IsWhatPairsAreInATurn) {
   EXPECT_LT(difference_db(receive(s, 1'000'000).sound, receive(s, 0).sound), -34.0);
 }
 
+// Eight phones of a hull at two depths on a shelf in summer, under way: waves differ from depth to
+// depth, so the phones need paths of their own, which those at one depth share. Against paths to
+// every phone, of which a quarter is asked for.
+TEST(TwoStepEcho, PhonesAtOneDepthShareTheirPaths) {
+  Scenario s = guide(120.0);
+  const std::vector<double> depth = {0.0, 20.0, 35.0, 60.0, 120.0},
+                            speed = {1521.0, 1520.0, 1501.0, 1494.0, 1493.0};
+  s.environment.water = SoundSpeedProfile::table(depth, speed, Interpolation::pchip);
+  s.environment.bottom.material =
+      FluidHalfSpace{.speed = 1650.0, .density = 1900.0, .attenuation_db_per_wavelength = 0.8};
+  s.platforms[0].track.start = {.position = {0.0, 0.0, 5.0}, .velocity = {0.0, 5.0, 0.0}};
+  s.platforms[1].track.start = s.platforms[0].track.start;
+  s.targets[0].track.start = {.position = {4330.0, 2500.0, 80.0}, .velocity = {-3.0, 0.0, 0.0}};
+  s.pulse = {.waveform = Lfm{.start_frequency = 3450.0, .end_frequency = 3550.0},
+             .duration = 0.5,
+             .window = PulseWindow::hann};
+  s.pings.recording_duration = 8.0;
+  s.pings.sample_rate = 8000.0;
+  s.propagation.band = BandOfLosses::automatic;
+  std::vector<Vec3> positions;
+  for (const double below : {0.0, 0.9})
+    for (const double bearing : {0.0, 1.5, 3.0, 4.5})
+      positions.emplace_back(std::sin(bearing), std::cos(bearing), below);
+  s.arrays[0].phones = positions;
+  const PingRecord shared = PingSimulator(s).sound(1);
+  s.propagation.exact_per_phone = true;
+  const PingRecord own = PingSimulator(s).sound(1);
+  ASSERT_EQ(shared.many_echoes.size(), 1);
+  ASSERT_TRUE(shared.many_echoes[0].at_phones);
+  double off = 0.0, all = 0.0;
+  for (std::size_t i = 0; i < own.pressure.size(); ++i) {
+    off += std::pow(double(own.pressure[i]) - double(shared.pressure[i]), 2);
+    all += std::pow(double(own.pressure[i]), 2);
+  }
+  EXPECT_LT(db_from_power(off / all), -30.0);
+  const auto asked_for = [](const PingRecord& record) {
+    return record.reuse.legs_searched + record.reuse.legs_reused;
+  };
+  EXPECT_LT(asked_for(shared), 0.5 * asked_for(own));
+}
+
 // A rough sea: mean and scattered intensity of either leg, drawn for each leg by itself. Energies
 // alone can be the same; of 24 geometries.
 TEST(TwoStepEcho, HasTheEnergyOfPairsUnderARoughSea) {
