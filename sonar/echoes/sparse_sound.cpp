@@ -99,7 +99,7 @@ class WideBand {
     nepers_ = 0.5 * longest *
               std::abs(nepers_per_metre(context, centre_ + half_width_) -
                        nepers_per_metre(context, std::max(1.0, centre_ - half_width_)));
-    // Of a leg that is faint beside another one of its target less matters.
+    // A leg that is faint beside another one of its target matters less.
     std::map<int, std::array<double, 2>> loudest;
     for (const EchoPath& path : paths)
       for (std::size_t i = 0; i < path.legs.size(); ++i)
@@ -144,8 +144,8 @@ class WideBand {
   [[nodiscard]] BandNodes nodes_for(double nepers, double delay, std::size_t degree) const {
     const BandNodes nodes = band_nodes(centre_, half_width_, nepers, delay);
     if (degree == 0) return nodes;
-    // Beside many nodes for the legs, each of which costs as much as the centre, those for losses
-    // and pattern need be no more exact than these.
+    // Nodes for losses and pattern need be no more exact than the legs' if these have many, each of
+    // which costs as much as the centre.
     constexpr std::size_t few = 16;
     const bool many = degree > few;
     const std::size_t step = many ? 4 : 8;

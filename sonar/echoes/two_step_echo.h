@@ -11,8 +11,8 @@ namespace asdic::detail {
 /// Which of an array's phones receive echoes in two steps.
 struct TwoStepReceivers {
   std::span<const Vec3> phones;  ///< [n] from the array's reference point [m]
-  /// By paths of their own, or of a phone beside them that receives alike: the first phones of the
-  /// array and, if there are more, the reference point.
+  /// Whether they have paths of their own, or of a phone beside them that receives alike. They are
+  /// then the first phones of the array and, if there are more, the reference point.
   bool by_themselves = false;
 };
 
