@@ -258,15 +258,21 @@ WaveGroup skimming_group(const FoundLeg& leg, bool surface, const std::vector<do
   const int most = surface ? leg.limits.max_surface_bounces : leg.limits.max_bottom_bounces;
   WaveGroup group;
   if (!(valid > 0.0) || most == 0) return group;
+  // The field is that of all rays beside the wall, so it counts as far as they are left out.
+  const auto beside_it = [&](const Arrival& ray) {
+    return (surface ? ray.bottom_bounces : ray.surface_bounces) == 0;
+  };
   double energy = 0.0, outside = 0.0;
   for (std::size_t i = 0; i < leg.found.size(); ++i) {
-    const Arrival& ray = leg.found[i];
-    if ((surface ? ray.bottom_bounces : ray.surface_bounces) > 0 || !(left_out[i] > least_weight))
-      continue;
-    group.add(i, left_out[i] * valid, pressure(ray, leg.frequency));
-    energy += std::norm(ray.amplitude);
-    outside += left_out[i] * std::norm(ray.amplitude);
+    if (!beside_it(leg.found[i])) continue;
+    energy += std::norm(leg.found[i].amplitude);
+    if (left_out[i] > least_weight) outside += left_out[i] * std::norm(leg.found[i].amplitude);
   }
+  const double share = outside > 0.0 ? valid * outside / energy : 0.0;
+  if (!(share > least_weight)) return group;
+  for (std::size_t i = 0; i < leg.found.size(); ++i)
+    if (left_out[i] > 0.0 && beside_it(leg.found[i]))
+      group.add(i, share, pressure(leg.found[i], leg.frequency));
   if (group.rays.empty()) return group;
   const Environment beside = without(leg.ocean, !surface, surface);
   const WaveColumn column(beside, leg.frequency, leg.source_depth,
@@ -274,7 +280,7 @@ WaveGroup skimming_group(const FoundLeg& leg, bool surface, const std::vector<do
   const WaveIntegral waves(column, 1, beside.bottom.depth - beside.surface.depth,
                            std::span(&leg.range, 1));
   if (waves.steps() > most_cycle_steps) return {};
-  group.lacking += valid * outside / energy * waves.field().front();
+  group.lacking += share * waves.field().front();
   return group;
 }
 
