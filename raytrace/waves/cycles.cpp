@@ -260,7 +260,8 @@ WaveGroup skimming_group(const FoundLeg& leg, bool surface, const std::vector<do
   if (!(valid > 0.0) || most == 0) return group;
   // The field is that of all rays beside the wall, so it counts as far as they are left out.
   const auto beside_it = [&](const Arrival& ray) {
-    return (surface ? ray.bottom_bounces : ray.surface_bounces) == 0;
+    return (surface ? ray.bottom_bounces : ray.surface_bounces) == 0 &&
+           ray.kind != ArrivalKind::diffracted && std::norm(ray.amplitude) > 0.0;
   };
   double energy = 0.0, outside = 0.0;
   for (std::size_t i = 0; i < leg.found.size(); ++i) {
@@ -271,8 +272,7 @@ WaveGroup skimming_group(const FoundLeg& leg, bool surface, const std::vector<do
   const double share = outside > 0.0 ? valid * outside / energy : 0.0;
   if (!(share > least_weight)) return group;
   for (std::size_t i = 0; i < leg.found.size(); ++i)
-    if (left_out[i] > 0.0 && beside_it(leg.found[i]))
-      group.add(i, share, pressure(leg.found[i], leg.frequency));
+    if (beside_it(leg.found[i])) group.add(i, share, pressure(leg.found[i], leg.frequency));
   if (group.rays.empty()) return group;
   const Environment beside = without(leg.ocean, !surface, surface);
   const WaveColumn column(beside, leg.frequency, leg.source_depth,
