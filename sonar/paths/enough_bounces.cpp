@@ -127,7 +127,7 @@ Bounces search_bounces(const PropagationSettings& settings, const BounceSearch& 
     if (!converged && !too_many && most < search.most) continue;
     const int bounces = too_many ? before : by_most.enough(search.tolerance_db);
     Bounces followed = numbers ? asked : as_asked(settings, bounces);
-    // Where the last doubling still adds, the next one is taken to add as much.
+    // The next doubling is taken to add as much as the last one, if that still adds.
     const double beyond = converged ? 0.0 : by_most.left_out_db(most / 2);
     followed.left_out_db =
         numbers ? left_out_by_numbers + beyond : by_most.estimate_db(bounces, converged);
