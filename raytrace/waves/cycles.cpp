@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -160,8 +161,9 @@ constexpr double least_error = 0.02;      // of an amplitude, that is reckoned w
 constexpr double tolerable_error = 0.01;  // of the whole, below which rays are right
 constexpr double least_change = 1e-3;     // of the whole, below which a ray stays one
 constexpr double least_weight = 1e-3;     // of a ray in the window of wavenumbers
-constexpr double resolved = 0.99;         // of a wavenumber that is summed history by history
-constexpr double of_a_wave = 0.1;         // what its amplitude may be off by at most
+constexpr double held_alone = 0.25;  // share of a ray from which on its group's waves are all its
+constexpr double resolved = 0.99;    // of a wavenumber that is summed history by history
+constexpr double of_a_wave = 0.1;    // what its amplitude may be off by at most
 
 /// Cubic from 0 to 1 between 0 and 1; 0 of what is no number.
 double faded_in(double x) {
@@ -192,6 +194,8 @@ struct WaveGroup {
   std::vector<std::size_t> rays;  // their indices in all arrivals
   std::vector<double> weights;    // [rays] shares of the rays in this group
   Complex lacking = 0.0;          // pressure of the waves less that of the rays
+  double held = 0.0;              // of its waves by its rays, by the greatest share of any of them
+  double shared = 0.0;            // of its rays with the flat waves' group, a sum of s(1 - s)
 
   void add(std::size_t ray, double weight, Complex pressure) {
     rays.push_back(ray);
@@ -284,6 +288,39 @@ WaveGroup skimming_group(const FoundLeg& leg, bool surface, const std::vector<do
   return group;
 }
 
+/// Gives the waves that the rays of a group do not hold to others: to the group that has the other
+/// shares of these rays, and to rays of groups near in cycles. The sum then stays that of the waves
+/// whichever rays were found, and nothing jumps where a ray leaves a group.
+/// \param groups  of terms 0, 1, …, and last that of the flat waves   \param flat  cycles of these
+void hand_on(std::vector<WaveGroup>& groups, double flat) {
+  constexpr double nearness = 8.0;  // a group one cycle off is given 4e-3 of what one beside it is
+  constexpr double by_rays = 1000.0;  // what a ray in both counts against a group beside it
+  const std::size_t last = groups.size() - 1;
+  std::vector<std::size_t> holders;
+  std::vector<Complex> kept;
+  for (std::size_t i = 0; i <= last; ++i) {
+    if (groups[i].held > 0.0) holders.push_back(i);
+    kept.push_back(groups[i].held * groups[i].lacking);
+  }
+  const auto claim = [&](std::size_t i, std::size_t j) {
+    const auto cycles = [&](std::size_t k) { return k < last ? double(k) : flat; };
+    if (i == j) return 0.0;
+    const double both = j == last ? groups[i].shared : i == last ? groups[j].shared : 0.0;
+    return groups[j].held * std::pow(1.0 + std::abs(cycles(i) - cycles(j)), -nearness) +
+           by_rays * both;
+  };
+  for (std::size_t i = 0; i <= last; ++i) {
+    const Complex given = (1.0 - groups[i].held) * groups[i].lacking;
+    if (given == 0.0) continue;
+    double claims = 0.0;
+    for (const std::size_t j : holders) claims += claim(i, j);
+    for (const std::size_t j : holders)
+      if (claims > 0.0) kept[j] += claim(i, j) / claims * given;
+    if (!(claims > 0.0)) kept[i] += given;
+  }
+  for (std::size_t i = 0; i <= last; ++i) groups[i].lacking = kept[i];
+}
+
 /// Groups by cycles.
 std::vector<WaveGroup> cycle_groups(const FoundLeg& leg, const CyclesKeeper& keeper) {
   const auto& [ocean, source_depth, receiver_depth, range, frequency, limits, found] = leg;
@@ -345,35 +382,23 @@ std::vector<WaveGroup> cycle_groups(const FoundLeg& leg, const CyclesKeeper& kee
     for (std::size_t i = 0; i < found.size(); ++i) {
       const Arrival& ray = found[i];
       const double cycled = plain->cycled(omega * ray.horizontal_slowness);
-      const double weight = weights[i] * (flat ? 1.0 - cycled : cycled);
+      const double share = flat ? 1.0 - cycled : cycled, weight = weights[i] * share;
       if (weight < least_weight || (!flat && term_of(ray) != int(number)) ||
           (surface && ray.surface_bounces > 0) || (bottom && ray.bottom_bounces > 0))
         continue;
       here.add(i, weight, pressure(ray, frequency));
+      here.held = std::max(here.held, std::min(1.0, share / held_alone));
+      if (!flat) here.shared += share * (1.0 - share);
     }
     return here;
   };
-  std::map<int, WaveGroup> groups;
+  std::vector<WaveGroup> groups;
   // A term has as many turns at either side, or one more.
   for (int term = 0; term < int(count); ++term)
-    groups.emplace(term, group_of(std::size_t(term), term + 1));
-  // Waves of groups without rays go to the nearest group with rays, so that the sum stays that of
-  // the waves whichever rays were found.
-  const auto hand_over = [&](const WaveGroup& from, int term) {
-    const auto nearest =
-        std::min_element(groups.begin(), groups.end(), [&](const auto& a, const auto& b) {
-          const auto off = [&](const auto& group) {
-            return std::pair(group.second.rays.empty(), std::abs(group.first - term));
-          };
-          return off(a) < off(b);
-        });
-    if (from.rays.empty() && !nearest->second.rays.empty()) nearest->second.lacking += from.lacking;
-  };
-  const WaveGroup flat = group_of(count, flat_cycles);
-  hand_over(flat, flat_cycles);
-  for (const auto& [term, here] : groups) hand_over(here, term);
-  all.push_back(flat);
-  for (auto& [term, here] : groups) all.push_back(std::move(here));
+    groups.push_back(group_of(std::size_t(term), term + 1));
+  groups.push_back(group_of(count, flat_cycles));
+  hand_on(groups, flat_cycles);
+  std::move(groups.begin(), groups.end(), std::back_inserter(all));
   return all;
 }
 
