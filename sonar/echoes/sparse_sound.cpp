@@ -15,6 +15,8 @@
 #include "raytrace/ocean/absorption.h"
 #include "sonar/echoes/leg_response.h"
 #include "sonar/scenario/transmitter.h"
+#include "sonar/signal/pulse_spectrum.h"
+#include "sonar/synthesis/sound_synthesis.h"
 
 namespace asdic::detail {
 namespace {
@@ -123,8 +125,49 @@ class WideBand {
   }
 
   [[nodiscard]] const BandNodes& nodes() const noexcept { return nodes_; }
-  [[nodiscard]] const ChangingLegs<SampledResponse>& legs() const noexcept { return legs_; }
+  [[nodiscard]] const Pulse& pulse() const noexcept { return *context_.pulse; }
   [[nodiscard]] BandPart part(std::size_t k) const { return part(nodes_, k); }
+  /// Gives paths the amplitudes that they have in one part. \param paths  of those of the band
+  void put_amplitudes(const BandPart& at, std::span<EchoPath> paths) const {
+    std::unordered_map<const SampledResponse*, std::vector<std::complex<double>>> known;
+    std::vector<std::span<const std::complex<double>>> of_path;
+    for (EchoPath& path : paths) {
+      of_path.clear();
+      for (const PathOnLeg& on : path.legs) {
+        const SampledResponse* leg = legs_.of(on);
+        if (leg == nullptr) {
+          of_path.emplace_back();
+          continue;
+        }
+        const auto [found, is_new] = known.try_emplace(leg);
+        if (is_new) found->second = leg->at(at.frequency);
+        of_path.emplace_back(found->second);
+      }
+      path.received.amplitude = path.response.without_pattern *
+                                at.pattern.towards(path.response.bearing, path.response.elevation) *
+                                response_of(path, at, of_path);
+    }
+  }
+  /// The largest amplitudes that paths have anywhere in the band. \return [paths]
+  [[nodiscard]] std::vector<double> largest_amplitudes(std::span<const EchoPath> paths) const {
+    constexpr std::size_t finer = 4;  // than the nodes
+    const std::size_t count = nodes_.frequencies.size(), steps = finer * count;
+    std::vector<EchoPath> at_node(paths.begin(), paths.end());
+    std::vector<std::complex<double>> amplitudes(steps * paths.size());
+    for (std::size_t k = 0; k < count; ++k) {
+      put_amplitudes(part(k), at_node);
+      for (std::size_t j = 0; j < steps; ++j) {
+        const double beside = 2.0 * (double(j) + 0.5) / double(steps) - 1.0;
+        const double basis = nodes_.basis(k, centre_ + beside * half_width_);
+        for (std::size_t i = 0; i < paths.size(); ++i)
+          amplitudes[j * paths.size() + i] += basis * at_node[i].received.amplitude;
+      }
+    }
+    std::vector<double> largest(paths.size());
+    for (std::size_t n = 0; n < amplitudes.size(); ++n)
+      largest[n % paths.size()] = std::max(largest[n % paths.size()], std::abs(amplitudes[n]));
+    return largest;
+  }
   /// Parts for one leg by itself. \param leg  0: the way there, with the transmitter's pattern;
   /// 1: the way back
   [[nodiscard]] std::vector<BandPart> parts_of(std::size_t leg) const {
@@ -173,6 +216,66 @@ class WideBand {
   std::array<std::size_t, 2> degrees_ = {};  // of the polynomials of either leg
   BandNodes nodes_;
 };
+
+/// Length of the longest path there and back [m].
+double longest_of(std::span<const EchoPath> paths) {
+  double longest = 0.0;
+  for (const EchoPath& path : paths) longest = std::max(longest, path.response.path_length);
+  return longest;
+}
+
+/// Adds what phones receive along paths, part by part of the band.
+void add_sound(const WideBand& band, std::span<const EchoPath> paths, std::span<const Vec3> phones,
+               const Recording& recording, double max_doppler, Baseband& sum) {
+  std::vector<EchoPath> filtered(paths.begin(), paths.end());
+  for (std::size_t k = 0; k < band.nodes().frequencies.size(); ++k) {
+    const BandPart at = band.part(k);
+    band.put_amplitudes(at, filtered);
+    Baseband sound = narrow_band_sound(Synthesizer(band.pulse(), recording, max_doppler, at.filter),
+                                       filtered, phones);
+    if (sum.channels == 0)
+      sum = std::move(sound);
+    else
+      std::transform(sound.values.begin(), sound.values.end(), sum.values.begin(),
+                     sum.values.begin(), std::plus<>{});
+  }
+}
+
+/// Paths whose sound is received with no more than a pulse's duration between them.
+struct PathsTogether {
+  double first, last;  // times between which they are received [s]
+  std::vector<EchoPath> paths;
+  double bound = 0.0;  // of the envelope of their sum [Pa]
+};
+
+/// Paths by the times at which they are received, in order. Times hold the edges of the band and
+/// what reflections delay; there may be minutes between echoes of one ping.
+std::vector<PathsTogether> paths_together(const Pulse& pulse, std::span<const EchoPath> paths) {
+  const double edge = 2.0 / response_half_band(pulse);
+  const auto begin_of = [&](const EchoPath& path) {
+    return (path.curve ? path.curve->first_received() : path.received.delay) - edge;
+  };
+  const auto end_of = [&](const EchoPath& path) {
+    const Return& received = path.received;
+    return (path.curve ? path.curve->last_received()
+                       : received.delay + pulse.duration() / received.doppler) +
+           delay_of_response(pulse);
+  };
+  std::vector<const EchoPath*> sorted;
+  for (const EchoPath& path : paths) sorted.push_back(&path);
+  std::stable_sort(sorted.begin(), sorted.end(), [&](const EchoPath* a, const EchoPath* b) {
+    return begin_of(*a) < begin_of(*b);
+  });
+  std::vector<PathsTogether> groups;
+  for (const EchoPath* path : sorted) {
+    const double begin = begin_of(*path), end = end_of(*path);
+    if (groups.empty() || begin > groups.back().last + pulse.duration())
+      groups.push_back({.first = begin, .last = end, .paths = {}});
+    groups.back().last = std::max(groups.back().last, end);
+    groups.back().paths.push_back(*path);
+  }
+  return groups;
+}
 
 }  // namespace
 
@@ -257,39 +360,44 @@ SparseSound by_band(const EchoContext& context, const Transmitter& projector,
 Baseband wide_band_sound(const EchoContext& context, const Transmitter& projector,
                          std::span<const EchoPath> paths, std::span<const Vec3> phones,
                          const Recording& recording, double max_doppler, Baseband more) {
-  double longest = 0.0;
-  for (const EchoPath& path : paths) longest = std::max(longest, path.response.path_length);
-  const WideBand band(context, projector, paths, longest, recording, max_doppler);
-  std::vector<EchoPath> filtered(paths.begin(), paths.end());
-  for (std::size_t k = 0; k < band.nodes().frequencies.size(); ++k) {
-    const BandPart at = band.part(k);
-    std::unordered_map<const SampledResponse*, std::vector<std::complex<double>>> known;
-    std::vector<std::span<const std::complex<double>>> of_path;
-    for (EchoPath& path : filtered) {
-      of_path.clear();
-      for (const PathOnLeg& on : path.legs) {
-        const SampledResponse* leg = band.legs().of(on);
-        if (leg == nullptr) {
-          of_path.emplace_back();
-          continue;
-        }
-        const auto [found, is_new] = known.try_emplace(leg);
-        if (is_new) found->second = leg->at(at.frequency);
-        of_path.emplace_back(found->second);
-      }
-      path.received.amplitude = path.response.without_pattern *
-                                at.pattern.towards(path.response.bearing, path.response.elevation) *
-                                response_of(path, at, of_path);
-    }
-    Baseband sound = narrow_band_sound(
-        Synthesizer(*context.pulse, recording, max_doppler, at.filter), filtered, phones);
-    if (more.channels == 0)
-      more = std::move(sound);
-    else
-      std::transform(sound.values.begin(), sound.values.end(), more.values.begin(),
-                     more.values.begin(), std::plus<>{});
-  }
+  const WideBand band(context, projector, paths, longest_of(paths), recording, max_doppler);
+  add_sound(band, paths, phones, recording, max_doppler, more);
   return more;
+}
+
+double peak_of_wide_band(const EchoContext& context, const Transmitter& projector,
+                         std::span<const EchoPath> paths, const Recording& recording,
+                         double max_doppler) {
+  const Pulse& pulse = *context.pulse;
+  std::vector<PathsTogether> groups = paths_together(pulse, paths);
+  if (groups.empty()) return 0.0;
+  const double start = groups.front().first;
+  const WideBand band(context, projector, paths, longest_of(paths), recording, max_doppler);
+  if (groups.size() > 1) {
+    // |∫C(ν)·H(ν)·e^{i2πνt}dν| is at most max|H|·∫|C|dν.
+    const PulseSpectrum spectrum = pulse_spectrum(pulse, context.frequency);
+    double sum = 0.0;
+    for (const std::complex<double> bin : spectrum.bins) sum += spectrum.bin_width * std::abs(bin);
+    for (PathsTogether& group : groups)
+      for (const double most : band.largest_amplitudes(group.paths)) group.bound += sum * most;
+    std::stable_sort(
+        groups.begin(), groups.end(),
+        [](const PathsTogether& a, const PathsTogether& b) { return a.bound > b.bound; });
+  }
+  const std::vector<Vec3> reference_point = {Vec3::Zero()};
+  double peak = 0.0;
+  for (const PathsTogether& group : groups) {
+    if (groups.size() > 1 && group.bound <= peak) break;
+    Recording around = recording;  // its samples are those of one recording of all
+    around.start =
+        start + std::floor((group.first - start) * around.sample_rate) / around.sample_rate;
+    around.samples =
+        static_cast<std::size_t>(std::ceil((group.last - around.start) * around.sample_rate)) + 1;
+    Baseband sound;
+    add_sound(band, group.paths, reference_point, around, max_doppler, sound);
+    peak = std::max(peak, largest_envelope(sound, 0));
+  }
+  return peak;
 }
 
 }  // namespace asdic::detail

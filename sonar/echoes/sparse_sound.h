@@ -74,4 +74,10 @@ struct TwoStepBand {
                                        std::span<const Vec3> phones, const Recording& recording,
                                        double max_doppler, Baseband more = {});
 
+/// Peak of the envelope that wide_band_sound() gives at the array's reference point, whenever it is
+/// received: within the record or not [Pa].
+[[nodiscard]] double peak_of_wide_band(const EchoContext& context, const Transmitter& projector,
+                                       std::span<const EchoPath> paths, const Recording& recording,
+                                       double max_doppler);
+
 }  // namespace asdic::detail

@@ -204,32 +204,6 @@ PingSimulator::SparseReturns PingSimulator::sparse_returns(const EchoContext& co
   return returns;
 }
 
-/// When the first and the last of an echo is received, since the start of the ping [s].
-static std::pair<double, double> received_between(const Pulse& pulse, const EchoPath& echo) {
-  const Return& received = echo.received;
-  if (echo.curve) return {echo.curve->first_received(), echo.curve->last_received()};
-  return {received.delay, received.delay + pulse.duration() / received.doppler};
-}
-
-/// Times in which echoes are received, with the edges of the band and delayed by reflections, with
-/// nothing for as long as a pulse between them: first and last [s], in order.
-static std::vector<std::pair<double, double>> times_of(const Pulse& pulse,
-                                                       std::span<const EchoPath> echoes) {
-  const double edge = 2.0 / response_half_band(pulse);
-  std::vector<std::pair<double, double>> each, together;
-  for (const EchoPath& echo : echoes) {
-    const auto [first, last] = received_between(pulse, echo);
-    each.emplace_back(first - edge, last + delay_of_response(pulse));
-  }
-  std::sort(each.begin(), each.end());
-  for (const auto& [first, last] : each) {
-    if (together.empty() || first > together.back().second + pulse.duration())
-      together.emplace_back(first, last);
-    together.back().second = std::max(together.back().second, last);
-  }
-  return together;
-}
-
 TwoStepBand PingSimulator::band_of(const EchoContext& context, const Emission& emission,
                                    const PingRecord& record, std::span<const EchoPath> loudest,
                                    double last) const {
@@ -247,28 +221,7 @@ double PingSimulator::peak_of(const Emission& emission, int array, std::span<con
   if (!across_the_band(context, emission.projector, echoes))
     return peak_of_echoes(emission.pulse, echoes,
                           recorded_pulse(emission.pulse, recording, max_doppler_));
-  // Groups are gridded one by one, because there may be minutes between echoes of one ping.
-  const std::vector<Vec3> reference_point = {Vec3::Zero()};
-  const std::vector<std::pair<double, double>> times = times_of(emission.pulse, echoes);
-  double peak = 0.0;
-  for (const auto& [first, last] : times) {
-    std::vector<EchoPath> then;
-    std::copy_if(echoes.begin(), echoes.end(), std::back_inserter(then),
-                 [&, first = first, last = last](const EchoPath& echo) {
-                   const double begin = received_between(emission.pulse, echo).first;
-                   return begin >= first && begin <= last;
-                 });
-    Recording around = recording;  // its samples are those of one recording of all
-    around.start =
-        times.front().first +
-        std::floor((first - times.front().first) * around.sample_rate) / around.sample_rate;
-    around.samples =
-        static_cast<std::size_t>(std::ceil((last - around.start) * around.sample_rate)) + 1;
-    peak = std::max(peak, largest_envelope(wide_band_sound(context, emission.projector, then,
-                                                           reference_point, around, max_doppler_),
-                                           0));
-  }
-  return peak;
+  return peak_of_wide_band(context, emission.projector, echoes, recording, max_doppler_);
 }
 
 PingSimulator::Emission PingSimulator::emit(const Transmission& sent, int ping) const {
