@@ -3,7 +3,7 @@ import math
 
 
 import program
-from law import Silent, alike, copied, expect, law, ping, plain, smooth, stratified
+from law import Silent, alike, alike_in_the_mean, copied, expect, law, ping, plain, smooth, stratified
 
 
 def table(s, interpolation, p):
@@ -120,7 +120,10 @@ def flat_shape(s, p):
 
 @law
 def finer_map(s, p):
-    """A map of a plane floor sampled twice as finely is the same floor. Four-byte heights: 1e-7 of the depth."""
+    """A map of a plane floor sampled twice as finely is the same floor. Four-byte heights: 1e-7 of the depth.
+
+    Planes over a bicubic map leave out up to 2 cm of it, so paths strike a rough boundary elsewhere, where it has other waves.
+    """
     s = stratified(plain(s))
     e = s["environment"]
     depth = e["bottom"].pop("depth") / 0.8  # below all that is in the water
@@ -139,7 +142,7 @@ def finer_map(s, p):
     first = ping(s)
     s2 = copied(s)
     s2["_files"] = {"floor.asc": grid(17, cell / 2)}
-    alike(first, ping(s2), s, 0.02, f"a plane map of half the cells ({how})")
+    alike_in_the_mean(first, ping(s2), s, 0.02, f"a plane map of half the cells ({how})")
 
 
 @law
