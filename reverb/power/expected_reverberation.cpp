@@ -6,6 +6,7 @@
 
 #include "core/mixed_bits.h"
 #include "raytrace/parallel/parallel.h"
+#include "reverb/power/delay_bins.h"
 #include "reverb/power/path_interference.h"
 
 namespace asdic::detail {
@@ -454,6 +455,35 @@ struct EnergySteps {
   }
 };
 
+/// Energy by the delay of its leading edge, in even bins, each a fraction of a step: the pulse is
+/// spread over the steps once for each bin.
+class EnergyByDelay {
+ public:
+  EnergyByDelay(const EnergySteps& steps, std::size_t count, double duration)
+      : bin_(steps.step / finer),
+        begin_(steps.first - duration - bin_),
+        bins_(static_cast<std::size_t>(
+            std::ceil((static_cast<double>(count) * steps.step + duration) / bin_) + 2.0)) {}
+
+  /// Adds energy that arrives evenly over an extent of delay, of a bin at least.
+  void add(double energy, double delay, double extent) noexcept {
+    const double half = 0.5 * std::max(1.0, extent / bin_), middle = (delay - begin_) / bin_;
+    const double all = static_cast<double>(bins_.size());
+    const double from = std::max(0.0, middle - half), to = std::min(all, middle + half);
+    if (from < to) spread(energy * (to - from) / (2.0 * half), from, to, std::span(bins_));
+  }
+  void receive(double duration, EnergySteps& steps) const noexcept {
+    for (std::size_t i = 0; i < bins_.size(); ++i)
+      if (bins_[i] != 0.0)
+        steps.add(bins_[i], begin_ + (static_cast<double>(i) + 0.5) * bin_, bin_, duration);
+  }
+
+ private:
+  static constexpr double finer = 16.0;
+  double bin_, begin_;  // [s]
+  std::vector<double> bins_;
+};
+
 }  // namespace
 
 std::vector<double> ExpectedReverberation::mean_power(const SentPulse& pulse, double first,
@@ -470,6 +500,7 @@ std::vector<double> ExpectedReverberation::mean_power(const SentPulse& pulse, do
   in_parallel(most_tasks, [&](std::size_t task) {
     EnergySteps& steps = parts[task];
     steps.energy.assign(count, 0.0);
+    EnergyByDelay arriving(steps, count, pulse.duration);
     std::vector<PlacedSound> here;
     for (std::size_t i = cuts[task]; i < cuts[task + 1]; ++i) {
       const Sample& sample = samples[i];
@@ -485,7 +516,7 @@ std::vector<double> ExpectedReverberation::mean_power(const SentPulse& pulse, do
       });
       for (std::size_t a = 0; a < here.size(); ++a) {
         const PlacedSound& one = here[a];
-        steps.add(pulse.energy * std::norm(one.pressure), one.delay, one.extent, pulse.duration);
+        arriving.add(pulse.energy * std::norm(one.pressure), one.delay, one.extent);
         for (std::size_t b = a + 1; b < here.size() && !one.by_itself; ++b) {
           const PlacedSound& other = here[b];
           if ((*other.phases)[0] - (*one.phases)[0] >= out_of_phase) break;
@@ -498,12 +529,13 @@ std::vector<double> ExpectedReverberation::mean_power(const SentPulse& pulse, do
                               (one.pressure * std::conj(other.pressure) *
                                (later < 0.0 ? std::conj(coherence) : coherence))
                                   .real();
-          steps.add(pulse.energy * both, 0.5 * (one.delay + other.delay),
-                    0.5 * (one.extent + other.extent), pulse.duration);
+          arriving.add(pulse.energy * both, 0.5 * (one.delay + other.delay),
+                       0.5 * (one.extent + other.extent));
         }
       }
       here.clear();
     }
+    arriving.receive(pulse.duration, steps);
   });
   std::vector<double> mean(count, 0.0);
   for (const EnergySteps& part : parts)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/doppler.h"
 
@@ -9,25 +10,24 @@ namespace asdic::detail {
 namespace {
 
 /// The pair that takes the same two paths the other way round, if it is another one.
-const PathPair* reciprocal(const PathPairs& pairs, const PathPair& pair) noexcept {
-  for (const PathPair& other : pairs.found)
+PathPair* reciprocal(PathPairs& pairs, const PathPair& pair) noexcept {
+  for (PathPair& other : pairs.found)
     if (other.out == pair.back && other.back == pair.out && &other != &pair) return &other;
   return nullptr;
 }
 
-/// The same pair of paths to and from a place beside its own. The ground is the same there.
-PathPair beside(const ScatteringSheet& sheet, const PathPair& pair, const Vec2& own,
-                const Vec2& place) {
-  const Vec2 source = sheet.ends().source.position.head<2>();
-  const Vec2 receiver = (pair.receiver->position + pair.receiver->velocity * pair.delay).head<2>();
-  const Vec2 out = place - source, back = receiver - place;
-  PathPair found = pair;
-  found.leaving = out.normalized();
-  found.coming = back.normalized();
-  found.delay += pair.out->horizontal_slowness * (out.norm() - (own - source).norm()) +
-                 pair.back->horizontal_slowness * (back.norm() - (receiver - own).norm());
-  return found;
-}
+/// The way between an end and a place beside another one.
+struct WayBeside {
+  Vec2 direction;  // unit vector from the place to the end
+  double longer;   // than that of the other place [m]
+
+  WayBeside(const Vec2& end, const Vec2& own, const Vec2& place) {
+    const Vec2 way = end - place;
+    const double range = way.norm();
+    direction = way / range;
+    longer = range - (end - own).norm();
+  }
+};
 
 }  // namespace
 
@@ -51,8 +51,8 @@ void receive(const ScatteringField& field, const Ground& ground, const AudibleLi
   sheet.pairs_at(ground.middle, pairs, &limits, ground.ring, 0.0, ground.chance);
   memory.sounds.clear();
   memory.by.clear();
-  for (const PathPair& pair : pairs.found) {
-    const PathPair* other = sheet.one_fan() ? reciprocal(pairs, pair) : nullptr;
+  for (PathPair& pair : pairs.found) {
+    PathPair* other = sheet.one_fan() ? reciprocal(pairs, pair) : nullptr;
     double rotation = 0.0;
     if (other != nullptr) {
       rotation = omega * (other->delay - pair.delay);
@@ -82,7 +82,7 @@ void receive(const ScatteringField& field, const Ground& ground, const AudibleLi
     memory.by.push_back({&pair, other, h});
   }
   const std::span<const double> gains = memory.sounds.gains(interference, piece, memory.by.size());
-  const auto add = [&](Received h, const PathPair& pair) {
+  const auto add = [&](const Received& h, const PathPair& pair) {
     if (motion.kind != ScattererMotion::Kind::bragg) {
       received.push_back(h);
       return;
@@ -103,14 +103,38 @@ void receive(const ScatteringField& field, const Ground& ground, const AudibleLi
     h.one *= gains[i];
     h.other *= gains[i];
     if (ground.places.empty()) add(h, *pair);
-    for (const Vec2& place : ground.places) {
-      const PathPair there = beside(sheet, *pair, ground.middle, place);
-      h.delay = there.delay;
-      h.one_slowness = slowness(there);
-      if (other != nullptr)
-        h.other_slowness = slowness(beside(sheet, *other, ground.middle, place));
-      h.doppler = sheet.doppler(there, drift, 0.0);
-      add(h, there);
+  }
+  if (ground.places.empty() || memory.by.empty()) return;
+  std::stable_sort(memory.by.begin(), memory.by.end(),
+                   [](const ReceptionMemory::By& a, const ReceptionMemory::By& b) {
+                     return std::pair(a.pair->back_index, a.pair->receiver) <
+                            std::pair(b.pair->back_index, b.pair->receiver);
+                   });
+  const Vec2 source = sheet.ends().source.position.head<2>();
+  const Vec2 receiver = sheet.ends().receiver_at(memory.by.front().pair->delay).head<2>();
+  for (const Vec2& place : ground.places) {
+    const WayBeside out(source, ground.middle, place), back(receiver, ground.middle, place);
+    const auto move = [&](PathPair& pair) {
+      pair.leaving = -out.direction;
+      pair.coming = back.direction;
+    };
+    const PathPair* last = nullptr;
+    Vec3 home = Vec3::Zero();
+    for (const auto& [pair, other, received_there] : memory.by) {
+      Received h = received_there;
+      move(*pair);
+      if (last == nullptr || pair->back != last->back || pair->receiver != last->receiver)
+        home = slowness(*pair);
+      last = pair;
+      h.delay += pair->out->horizontal_slowness * out.longer +
+                 pair->back->horizontal_slowness * back.longer;
+      h.one_slowness = home;
+      if (other != nullptr) {
+        move(*other);
+        h.other_slowness = slowness(*other);
+      }
+      h.doppler = sheet.doppler(*pair, drift, 0.0);
+      add(h, *pair);
     }
   }
 }

@@ -38,8 +38,8 @@ struct Ground {
 struct ReceptionMemory {
   /// A pair of paths by which a place is received, and what is received by it.
   struct By {
-    const PathPair* pair;
-    const PathPair* other;  // its reciprocal, if both are received as one
+    PathPair* pair;
+    PathPair* other;  // its reciprocal, if both are received as one
     Received received;
   };
   PathPairs pairs;
@@ -52,7 +52,8 @@ struct ReceptionMemory {
 /// is put into their powers. docs/theory/reverberation.md, "Covariance"
 ///
 /// Places on a piece share its pairs and their amplitudes. Each has its own directions and Doppler
-/// factors, and the delays change from place to place by the slownesses along the ground.
+/// factors, and the delays change from place to place by the slownesses along the ground. What a
+/// place sends back along one path follows each other.
 /// \param azimuthally_symmetric  it is a whole circle
 void receive(const ScatteringField& field, const Ground& ground, const AudibleLimits& limits,
              const PathInterference& interference, bool azimuthally_symmetric,

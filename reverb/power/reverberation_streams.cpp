@@ -174,7 +174,6 @@ struct CellHash {
 /// What is received of a part of a cell: powers, the two sounds' product, sums weighted with the
 /// powers.
 struct PartSum {
-  std::uint64_t of = 0;  // word_of() its directions and its part of the Doppler factor
   double one = 0.0, other = 0.0, doppler = 0.0;
   std::complex<double> both = 0.0;
   Vec3 one_slowness = Vec3::Zero(), other_slowness = Vec3::Zero();
@@ -182,17 +181,22 @@ struct PartSum {
   double one_curvature = 0.0, other_curvature = 0.0;
 
   [[nodiscard]] double power() const noexcept { return one + other; }
-  void scale(double share) noexcept {
-    one *= share;
-    other *= share;
-    doppler *= share;
-    both *= share;
-    one_slowness *= share;
-    other_slowness *= share;
-    one_norm *= share;
-    other_norm *= share;
-    one_curvature *= share;
-    other_curvature *= share;
+  /// \param share  of what is received   \param norm  of its first slowness
+  void add(const Received& h, double share, double norm) noexcept {
+    const double power = share * std::norm(h.one);
+    one += power;
+    one_slowness += power * h.one_slowness;
+    one_norm += power * norm;
+    one_curvature += power / h.one_length;
+    doppler += power * (h.doppler - 1.0);
+    if (h.other == 0.0) return;
+    const double more = share * std::norm(h.other);
+    other += more;
+    other_slowness += more * h.other_slowness;
+    other_norm += more * h.other_slowness.norm();
+    other_curvature += more / h.other_length;
+    doppler += more * (h.doppler - 1.0);
+    both += share * h.one * std::conj(h.other);
   }
   void add(const PartSum& more) noexcept {
     one += more.one;
@@ -211,7 +215,7 @@ struct PartSum {
 struct CellSum {
   Cell cell;
   std::size_t first = 0;             // of its bins
-  std::vector<std::uint64_t> words;  // of its parts, side by side to be looked through
+  std::vector<std::uint64_t> words;  // word_of() the direction and Doppler part of each part
   std::vector<PartSum> parts;
 
   [[nodiscard]] double power() const noexcept {
@@ -219,11 +223,14 @@ struct CellSum {
     for (const PartSum& part : parts) sum += part.power();
     return sum;
   }
-  void add(const PartSum& more) {
-    for (std::size_t i = 0; i < words.size(); ++i)
-      if (words[i] == more.of) return parts[i].add(more);
-    words.push_back(more.of);
-    parts.push_back(more);
+  [[nodiscard]] std::size_t part(std::uint64_t word) {
+    const auto known = std::find(words.begin(), words.end(), word);
+    const auto place = static_cast<std::size_t>(known - words.begin());
+    if (known == words.end()) {
+      words.push_back(word);
+      parts.emplace_back();
+    }
+    return place;
   }
 };
 
@@ -232,14 +239,16 @@ class CellSums {
  public:
   explicit CellSums(std::span<const StreamBlock> blocks) : blocks_(blocks) {}
 
-  CellSum& at(const Cell& cell) {
+  /// Its number.
+  [[nodiscard]] std::size_t at(const Cell& cell) {
     const auto [place, is_new] = index_.try_emplace(cell, sums_.size());
     if (is_new) {
       sums_.push_back({.cell = cell, .first = power_.size()});
       power_.resize(power_.size() + bins(cell));
     }
-    return sums_[place->second];
+    return place->second;
   }
+  [[nodiscard]] CellSum& operator[](std::size_t number) noexcept { return sums_[number]; }
   [[nodiscard]] std::size_t bins(const Cell& cell) const noexcept {
     return blocks_[cell.block()].end - blocks_[cell.block()].begin;
   }
@@ -253,8 +262,9 @@ class CellSums {
       return;
     }
     for (const CellSum& theirs : more.sums_) {
-      CellSum& ours = at(theirs.cell);
-      for (const PartSum& part : theirs.parts) ours.add(part);
+      CellSum& ours = sums_[at(theirs.cell)];
+      for (std::size_t i = 0; i < theirs.parts.size(); ++i)
+        ours.parts[ours.part(theirs.words[i])].add(theirs.parts[i]);
       const std::span<const float> from = more.power(theirs);
       const std::span<float> to = power(ours);
       for (std::size_t i = 0; i < to.size(); ++i) to[i] += from[i];
@@ -366,54 +376,72 @@ struct GroundAround {
 class Gatherer {
  public:
   Gatherer(const Resolution& resolution, std::span<const StreamBlock> blocks,
-           std::span<const std::uint32_t> block_of, double bin)
-      : resolution_(resolution), blocks_(blocks), block_of_(block_of), bin_(bin) {}
+           std::span<const std::uint32_t> block_of, double bin, CellSums& sums)
+      : resolution_(resolution), blocks_(blocks), block_of_(block_of), bin_(bin), sums_(sums) {}
 
   /// \param lasts  from ping to ping
-  void add(const Received& h, bool lasts, CellSums& sums) const {
+  void add(const Received& h, bool lasts) {
     const double bins = static_cast<double>(block_of_.size());
     double first = std::max(0.0, (h.delay - 0.5 * h.extent) / bin_);
     const double last = std::min(bins, (h.delay + 0.5 * h.extent) / bin_);
     if (!(first < bins) || last < first) return;
-    const Directions direction = resolution_.direction(h.one_slowness);
+    if (h.one_slowness != from_.slowness || h.one_length != from_.length) look(h);
     const std::int16_t shift = resolution_.doppler(h.doppler);
-    const PartSum part{.of = word_of(direction, shift),
-                       .one = std::norm(h.one),
-                       .other = std::norm(h.other),
-                       .doppler = (std::norm(h.one) + std::norm(h.other)) * (h.doppler - 1.0),
-                       .both = h.one * std::conj(h.other),
-                       .one_slowness = std::norm(h.one) * h.one_slowness,
-                       .other_slowness = std::norm(h.other) * h.other_slowness,
-                       .one_norm = std::norm(h.one) * h.one_slowness.norm(),
-                       .other_norm = std::norm(h.other) * h.other_slowness.norm(),
-                       .one_curvature = std::norm(h.one) / h.one_length,
-                       .other_curvature = std::norm(h.other) / h.other_length};
     std::optional<Directions> other;
     if (h.other != 0.0) other = cells_of(resolution_.direction(h.other_slowness));
-    const Cell cell = Cell(cells_of(direction), other,
-                           resolution_.bend(h.one_slowness, h.one_length), cell_of(shift))
-                          .lasting(lasts);
+    const Cell cell = Cell(from_.cells, other, from_.bend, cell_of(shift)).lasting(lasts);
+    const std::uint64_t word = word_of(from_.direction, shift);
     const double whole = std::max(last - first, 1e-9);
     do {
       const auto at = std::min(static_cast<std::size_t>(first), block_of_.size() - 1);
       const StreamBlock& block = blocks_[block_of_[at]];
       const double until = std::min(last, static_cast<double>(block.end));
       const double share = last > first ? (until - first) / whole : 1.0;
-      PartSum here = part;
-      here.scale(share);
-      CellSum& sum = sums.at(cell.in_block(block_of_[at]));
-      sum.add(here);
-      spread(here.power(), first - static_cast<double>(block.begin),
-             until - static_cast<double>(block.begin), sums.power(sum));
+      find(cell.in_block(block_of_[at]), word);
+      CellSum& sum = sums_[sum_];
+      sum.parts[part_].add(h, share, from_.norm);
+      spread(share * (std::norm(h.one) + std::norm(h.other)),
+             first - static_cast<double>(block.begin), until - static_cast<double>(block.begin),
+             sums_.power(sum));
       first = until;
     } while (first < last);
   }
 
  private:
+  /// The direction from which sound came last: that of one place along one path comes at once.
+  struct From {
+    Vec3 slowness = Vec3::Constant(infinity);
+    double length = 0.0, norm = 0.0;
+    Directions direction{}, cells{};
+    std::int16_t bend = 0;
+  };
+  void look(const Received& h) {
+    from_ = {.slowness = h.one_slowness,
+             .length = h.one_length,
+             .norm = h.one_slowness.norm(),
+             .direction = resolution_.direction(h.one_slowness),
+             .bend = resolution_.bend(h.one_slowness, h.one_length)};
+    from_.cells = cells_of(from_.direction);
+  }
+  void find(const Cell& cell, std::uint64_t word) {
+    if (known_ && cell == cell_ && word == word_) return;
+    if (!known_ || !(cell == cell_)) sum_ = sums_.at(cell);
+    part_ = sums_[sum_].part(word);
+    cell_ = cell;
+    word_ = word;
+    known_ = true;
+  }
+
   const Resolution& resolution_;
   std::span<const StreamBlock> blocks_;
   std::span<const std::uint32_t> block_of_;
   double bin_;
+  CellSums& sums_;
+  From from_;
+  bool known_ = false;  // what follows: the cell and its part that were met last
+  Cell cell_;
+  std::uint64_t word_ = 0;
+  std::size_t sum_ = 0, part_ = 0;
 };
 
 /// [one both; both* other] = F F^H, a noise for each column of F; over the power of both.
@@ -532,7 +560,6 @@ ReverberationStreams::ReverberationStreams(std::span<const ScatteringField* cons
               block_of.begin() + static_cast<std::ptrdiff_t>(blocks[b].end),
               static_cast<std::uint32_t>(b));
   const Resolution resolution(listener);
-  const Gatherer gatherer(resolution, blocks, block_of, bin);
 
   constexpr std::size_t together = 16;  // circles of a task
   CellSums sums(blocks);
@@ -543,12 +570,13 @@ ReverberationStreams::ReverberationStreams(std::span<const ScatteringField* cons
     const std::size_t circles = ground.edges.size() - 1;
     std::vector<CellSums> parts((circles + together - 1) / together, CellSums(blocks));
     in_parallel(parts.size(), [&](std::size_t part) {
+      Gatherer gatherer(resolution, blocks, block_of, bin, parts[part]);
       ReceptionMemory memory;
       std::vector<Received> received;
       for (std::size_t i = part * together; i < std::min(circles, (part + 1) * together); ++i) {
         received.clear();
         ground.receive(i, limits, interference, memory, received);
-        for (const Received& h : received) gatherer.add(h, field->stays, parts[part]);
+        for (const Received& h : received) gatherer.add(h, field->stays);
       }
     });
     for (CellSums& part : parts) sums.add(std::move(part));
