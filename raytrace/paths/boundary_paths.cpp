@@ -239,7 +239,8 @@ std::vector<CellPath> follow_branches(const EigenraySolver& solver, double sourc
   const double depth = !level.boundary                            ? level.depth
                        : *level.boundary == BoundaryKind::surface ? ocean.surface.depth
                                                                   : ocean.bottom.depth;
-  const BranchTable fan = solver.table(source_depth, depth, limits);
+  const auto kept = solver.table(source_depth, depth, limits);
+  const BranchTable& fan = *kept;
   std::vector<CellPath> found;
   BranchFollower follower(ocean, fan, level, grid, max_range, frequency, found);
   fan.for_each_piece(0.0, max_range, [&](const MonotonePiece& piece) {

@@ -6,6 +6,8 @@
 #include <mutex>
 #include <numeric>
 #include <optional>
+#include <tuple>
+#include <utility>
 
 #include "core/error.h"
 #include "core/units.h"
@@ -127,6 +129,105 @@ struct EigenraySolver::Columns {
   }
 };
 
+namespace {
+
+/// The rays of a search, before anything that depends on frequency is known of them.
+struct SearchedRays {
+  /// Pieces with the receivers between their ends, by range [first, last).
+  struct Held {
+    RootPiece piece;
+    std::size_t first, last;
+  };
+  struct Batch {
+    const FanInterval& interval;
+    SimdTasks tasks;
+    FoundRays rays;
+  };
+
+  std::shared_ptr<const BranchTable> fan;
+  std::vector<Held> held;
+  std::vector<RootTask> tasks;
+  std::vector<std::size_t> expected;  // [receivers] number of rays
+  std::vector<Batch> batches;         // where they are kept
+
+  /// \param wanted  [n] ranges, increasing [m]   \param order  [n] whose they are
+  SearchedRays(std::shared_ptr<const BranchTable> of, std::span<const double> wanted,
+               std::span<const std::size_t> order)
+      : fan(std::move(of)), expected(wanted.size(), 0) {
+    std::size_t roots = 0;
+    fan->for_each_piece(wanted, [&](const MonotonePiece& piece) {
+      const auto [low, high] = std::minmax(piece.range_begin, piece.range_end);
+      const auto first = std::lower_bound(wanted.begin(), wanted.end(), low),
+                 last = std::upper_bound(first, wanted.end(), high);
+      if (first == last) return;
+      held.push_back({.piece = {piece, fan->column().source_is_upper()},
+                      .first = static_cast<std::size_t>(first - wanted.begin()),
+                      .last = static_cast<std::size_t>(last - wanted.begin())});
+      roots += held.back().last - held.back().first;
+    });
+    tasks.reserve(roots);
+    for (const auto& [piece, first, last] : held)
+      for (std::size_t i = first; i < last; ++i) {
+        tasks.push_back({.piece = &piece, .receiver = order[i], .range = wanted[i]});
+        ++expected[order[i]];
+      }
+  }
+  /// Calls found(FanInterval, SimdTasks, FoundRays) with every batch.
+  template <class Found>
+  void solve(const Found& found) const {
+    for (auto begin = tasks.begin(); begin != tasks.end();) {  // pieces come interval by interval
+      const FanInterval& interval = *begin->piece->interval;
+      const auto end = std::find_if(
+          begin, tasks.end(), [&](const RootTask& t) { return t.piece->interval != &interval; });
+      RootGroups(*fan, interval, std::span(begin, end))
+          .solve(
+              [&](const SimdTasks& batch, const FoundRays& rays) { found(interval, batch, rays); });
+      begin = end;
+    }
+  }
+};
+
+/// All numbers of limits.
+auto numbers_of(const PathLimits& limits) {
+  const auto& [surface, bottom, angle, most, least, diffraction, faintest, delay, home] = limits;
+  return std::tuple(surface, bottom, angle, most, least, diffraction, faintest, delay, home);
+}
+using FanKey = std::tuple<double, double, decltype(numbers_of(PathLimits{}))>;
+
+/// The last few of something by key.
+template <class Key, class Value, std::size_t most>
+class LastFew {
+ public:
+  template <class Make>
+  std::shared_ptr<const Value> of(const Key& key, const Make& make) {
+    {
+      const std::lock_guard lock(mutex_);
+      const auto known = std::ranges::find(kept_, key, &Kept::first);
+      if (known != kept_.end()) return known->second;
+    }
+    std::shared_ptr<const Value> made = make();
+    const std::lock_guard lock(mutex_);
+    if (kept_.size() == most) kept_.erase(kept_.begin());
+    kept_.emplace_back(key, made);
+    return made;
+  }
+
+ private:
+  using Kept = std::pair<Key, std::shared_ptr<const Value>>;
+  std::mutex mutex_;
+  std::vector<Kept> kept_;  // the latest last
+};
+
+}  // namespace
+
+/// The last fans, and the last rays to one receiver: waves over a band ask for those at each of its
+/// frequencies, and the rays are the same.
+struct EigenraySolver::Searches {
+  static constexpr std::size_t most_fans = 8, most_rays = 32;
+  LastFew<FanKey, BranchTable, most_fans> fans;
+  LastFew<std::pair<FanKey, double>, SearchedRays, most_rays> rays;
+};
+
 /// The tracers of an environment by frequency: a sonar works at a few.
 struct EigenraySolver::Tracers {
   std::mutex mutex;
@@ -137,7 +238,8 @@ EigenraySolver::EigenraySolver(const Environment& environment)
     : environment_(environment),
       layered_(is_layered(environment)),
       tracers_(std::make_shared<Tracers>()),
-      columns_(std::make_shared<Columns>()) {
+      columns_(std::make_shared<Columns>()),
+      searches_(std::make_shared<Searches>()) {
   std::vector<double> ranges = {0.0};  // where the boundaries are nearest to each other
   for (const Boundary* boundary : {&environment.surface, &environment.bottom})
     if (boundary->shape)
@@ -189,10 +291,13 @@ std::vector<Arrivals> EigenraySolver::find(double source_depth,
   return found;
 }
 
-BranchTable EigenraySolver::table(double source_depth, double receiver_depth,
-                                  const PathLimits& limits) const {
+std::shared_ptr<const BranchTable> EigenraySolver::table(double source_depth, double receiver_depth,
+                                                         const PathLimits& limits) const {
   const double there = summed_depth(source_depth, receiver_depth, environment_);
-  return {Column(water_->layers, source_depth, there), limits, &environment_, water_->kept()};
+  return searches_->fans.of({source_depth, there, numbers_of(limits)}, [&] {
+    return std::make_shared<BranchTable>(Column(water_->layers, source_depth, there), limits,
+                                         &environment_, water_->kept());
+  });
 }
 
 std::optional<Arrival> EigenraySolver::follow(const Arrival& known, double source_depth,
@@ -228,49 +333,36 @@ std::vector<Arrivals> EigenraySolver::find(double source_depth, double receiver_
   wanted.reserve(ranges.size());
   for (const std::size_t i : order) wanted.push_back(std::max(ranges[i], least_range));
 
-  const BranchTable fan = table(source_depth, receiver_depth, limits);
-  const PathBuilder builder(environment_, fan.column(), frequency);
-  // Pieces with the receivers between their ends, by range [first, last).
-  struct Held {
-    RootPiece piece;
-    std::size_t first, last;
-  };
-  std::vector<Held> held;
-  std::size_t roots = 0;
-  fan.for_each_piece(wanted, [&](const MonotonePiece& piece) {
-    const auto [low, high] = std::minmax(piece.range_begin, piece.range_end);
-    const auto first = std::lower_bound(wanted.begin(), wanted.end(), low),
-               last = std::upper_bound(first, wanted.end(), high);
-    if (first == last) return;
-    held.push_back({.piece = {piece, fan.column().source_is_upper()},
-                    .first = static_cast<std::size_t>(first - wanted.begin()),
-                    .last = static_cast<std::size_t>(last - wanted.begin())});
-    roots += held.back().last - held.back().first;
-  });
-  std::vector<RootTask> tasks;
-  tasks.reserve(roots);
-  std::vector<std::size_t> expected(ranges.size(), 0);
-  for (const auto& [piece, first, last] : held)
-    for (std::size_t i = first; i < last; ++i) {
-      tasks.push_back({.piece = &piece, .receiver = order[i], .range = wanted[i]});
-      ++expected[order[i]];
-    }
-
+  const std::shared_ptr<const BranchTable> fan = table(source_depth, receiver_depth, limits);
+  const PathBuilder builder(environment_, fan->column(), frequency);
   std::vector<Arrivals> found(ranges.size());
-  for (std::size_t i = 0; i < found.size(); ++i) found[i].reserve(expected[i]);
-  for (auto begin = tasks.begin(); begin != tasks.end();) {  // pieces come interval by interval
-    const FanInterval& interval = *begin->piece->interval;
-    const auto end = std::find_if(
-        begin, tasks.end(), [&](const RootTask& t) { return t.piece->interval != &interval; });
-    RootGroups(fan, interval, std::span(begin, end))
-        .solve([&](const SimdTasks& batch, const FoundRays& rays) {
-          builder.build(interval, batch, rays, limits.faintest, found);
-        });
-    begin = end;
+  const auto reserve = [&](const SearchedRays& rays) {
+    for (std::size_t i = 0; i < found.size(); ++i) found[i].reserve(rays.expected[i]);
+  };
+  const auto build = [&](const FanInterval& interval, const SimdTasks& batch,
+                         const FoundRays& rays) {
+    builder.build(interval, batch, rays, limits.faintest, found);
+  };
+  if (ranges.size() > 1) {
+    const SearchedRays rays(fan, wanted, order);
+    reserve(rays);
+    rays.solve(build);
+  } else {
+    const FanKey between{source_depth, summed_depth(source_depth, receiver_depth, environment_),
+                         numbers_of(limits)};
+    const auto rays = searches_->rays.of({between, wanted.front()}, [&] {
+      auto made = std::make_shared<SearchedRays>(fan, wanted, order);
+      made->solve([&](const FanInterval& interval, const SimdTasks& batch, const FoundRays& one) {
+        made->batches.push_back({interval, batch, one});
+      });
+      return made;
+    });
+    reserve(*rays);
+    for (const auto& [interval, batch, one] : rays->batches) build(interval, batch, one);
   }
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (ranges[i] < least_range)
-      for (Arrival& path : found[i]) raise(path, ranges[i] / least_range, fan.column());
+      for (Arrival& path : found[i]) raise(path, ranges[i] / least_range, fan->column());
     sort_and_drop_doubles(found[i], order);
   }
 

@@ -58,13 +58,14 @@ class EigenraySolver {
   [[nodiscard]] std::shared_ptr<const RayTracer> tracer(double frequency) const;
 
   /// The fan between two depths of a layered ocean, for those who follow branches rather than
-  /// receivers (boundary_paths).
-  [[nodiscard]] BranchTable table(double source_depth, double receiver_depth,
-                                  const PathLimits& limits) const;
+  /// receivers (boundary_paths). The last few are kept.
+  [[nodiscard]] std::shared_ptr<const BranchTable> table(double source_depth, double receiver_depth,
+                                                         const PathLimits& limits) const;
 
  private:
   struct Tracers;
   struct Columns;
+  struct Searches;
 
   Environment environment_;
   bool layered_;
@@ -72,6 +73,7 @@ class EigenraySolver {
   std::shared_ptr<const LayeredOcean> water_;  // shared by copies, as is what follows
   std::shared_ptr<Tracers> tracers_;
   std::shared_ptr<Columns> columns_;
+  std::shared_ptr<Searches> searches_;
 };
 
 }  // namespace asdic::detail

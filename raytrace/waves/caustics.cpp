@@ -222,7 +222,7 @@ class Caustics {
   Caustics(const EigenraySolver& solver, const CausticsNeed& need, const PathLimits& limits)
       : need_(need),
         limits_(limits),
-        folds_(folds_within(solver.table(need.source_depth, need.receiver_depth, limits),
+        folds_(folds_within(*solver.table(need.source_depth, need.receiver_depth, limits),
                             need.nearest, need.furthest, 2.0 * pi * need.frequency)),
         slots_(std::make_unique<Slot[]>(folds_.size())) {}
 

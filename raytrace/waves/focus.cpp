@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 
 #include "core/units.h"
@@ -69,14 +70,14 @@ class TubeWidths {
     }
     const double sine = std::sin(std::max(std::abs(angle), flattest_ray));
     const double slowness = std::cos(std::max(std::abs(angle), flattest_ray)) / faster_;
-    const auto intervals = table_.intervals();
+    const auto intervals = table_->intervals();
     for (auto interval = intervals.rbegin(); interval != intervals.rend(); ++interval) {
       const double reference = interval->reference_speed;
       const double sigma2 = 1.0 - slowness * slowness * reference * reference;
       if (!(sigma2 > 0.0)) continue;
       const double sigma = std::sqrt(sigma2);
       if (sigma > interval->sigma.back()) return std::nullopt;
-      const double slope = table_.evaluate(*interval, branch, sigma).slope;
+      const double slope = table_->evaluate(*interval, branch, sigma).slope;
       const double sigma_per_angle = slowness * reference * reference * sine / (faster_ * sigma);
       const double other = std::sqrt(std::max(0.0, 1.0 - slowness * slowness * slower_ * slower_));
       return std::abs(slope * sigma_per_angle * other);
@@ -85,7 +86,7 @@ class TubeWidths {
   }
 
  private:
-  BranchTable table_;
+  std::shared_ptr<const BranchTable> table_;
   bool by_launch_, turns_above_;
   double faster_, slower_;
 };

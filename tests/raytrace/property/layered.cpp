@@ -55,7 +55,8 @@ INSTANTIATE_TEST_SUITE_P(Layered, EveryProfile, testing::ValuesIn(profiles()),
 // its truncation by h²r‴/6 ≈ 1e-4 of the slope.
 TEST_P(EveryProfile, RangeSlopeIsTheDerivative) {
   const EigenraySolver solver(ocean());
-  const BranchTable table = solver.table(4500.0, 125.0, {});
+  const auto kept = solver.table(4500.0, 125.0, {});
+  const BranchTable& table = *kept;
   int checked = 0;
   table.for_each_piece(0.0, 60e3, [&](const MonotonePiece& s) {
     if (s.sigma_end - s.sigma_begin < 1e-3)

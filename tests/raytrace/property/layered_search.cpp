@@ -82,7 +82,8 @@ TEST_P(EveryRule, FastSearchIsThePlainSearch) {
     const EigenraySolver solver(ocean.environment);
     const PathLimits limits{
         .max_surface_bounces = 6, .max_bottom_bounces = 6, .max_launch_angle = 1.5};
-    const BranchTable table = solver.table(ocean.source, ocean.receiver, limits);
+    const auto shared = solver.table(ocean.source, ocean.receiver, limits);
+    const BranchTable& table = *shared;
     const Column& column = table.column();
     std::uniform_real_distribution<double> km(0.3, 30.0);
     std::vector<double> ranges;
@@ -176,8 +177,8 @@ TEST_P(EveryRule, LanesAndSeriesAreThePlainSums) {
   for (int trial = 0; trial < 12; ++trial) {
     const RandomOcean ocean = random_ocean(random, GetParam());
     const EigenraySolver solver(ocean.environment);
-    const BranchTable table =
-        solver.table(ocean.source, ocean.receiver, {.max_launch_angle = 1.55});
+    const auto shared = solver.table(ocean.source, ocean.receiver, {.max_launch_angle = 1.55});
+    const BranchTable& table = *shared;
     const Column& column = table.column();
     for (const FanInterval* const fan : support::fan_intervals(table, 50e3)) {
       const double c_ref = fan->reference_speed;
@@ -243,8 +244,8 @@ TEST_P(EveryRule, KeptSeriesAreThePlainSums) {
   for (int trial = 0; trial < 12; ++trial) {
     const RandomOcean ocean = random_ocean(random, GetParam());
     const EigenraySolver solver(ocean.environment);
-    const BranchTable table =
-        solver.table(ocean.source, ocean.receiver, {.max_launch_angle = 1.55});
+    const auto shared = solver.table(ocean.source, ocean.receiver, {.max_launch_angle = 1.55});
+    const BranchTable& table = *shared;
     const OceanLegs* const series = table.kept();
     if (series == nullptr) continue;
     ++kept;

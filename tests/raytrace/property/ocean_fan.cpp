@@ -25,7 +25,7 @@ TEST(OceanFan, IsTheFanWalkedAnew) {
     std::size_t nodes = 0;
     for (const double source : {4500.0, 1234.5, 10.0})
       for (const double receiver : {125.0, 700.3, 4000.0, source}) {
-        const Column column = solver.table(source, receiver, {}).column();
+        const Column column = solver.table(source, receiver, {})->column();
         const BranchTable kept(column, {}, &ocean, {.layers = layers, .fan = &fan});
         const BranchTable anew(column, {}, &ocean);
         const auto a = support::fan_intervals(kept, 200e3), b = support::fan_intervals(anew, 200e3);
@@ -68,7 +68,8 @@ TEST(OceanFan, OfMunksLawIsTheFanWalkedAnew) {
     const EigenraySolver solver(ocean);
     for (const double source : {0.9 * depth, 1234.5, 10.0})
       for (const double receiver : {125.0, 700.3, 0.8 * depth, source}) {
-        const BranchTable kept = solver.table(source, receiver, {});
+        const auto shared = solver.table(source, receiver, {});
+        const BranchTable& kept = *shared;
         ASSERT_NE(kept.kept(), nullptr);
         const BranchTable anew(kept.column(), {}, &ocean);
         const auto a = support::fan_intervals(kept, 200e3), b = support::fan_intervals(anew, 200e3);

@@ -50,7 +50,8 @@ TEST_P(RecallSlow, TwoHundredThousandRaysFindNoMoreInALayeredOcean) {
   const EigenraySolver solver(ocean);
   const PathLimits limits{
       .max_surface_bounces = bounces, .max_bottom_bounces = bounces, .max_launch_angle = widest};
-  const BranchTable table = solver.table(source, receiver, limits);
+  const auto kept = solver.table(source, receiver, limits);
+  const BranchTable& table = *kept;
   const Column& column = table.column();
   std::vector<ColumnSums> fan;
   std::vector<double> angle;

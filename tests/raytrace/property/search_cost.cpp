@@ -85,7 +85,8 @@ struct LayeredSearch {
 };
 LayeredSearch search(const EigenraySolver& solver, const std::vector<double>& ranges,
                      const PathLimits& limits) {
-  const BranchTable fan = solver.table(4500.0, 125.0, limits);
+  const auto shared = solver.table(4500.0, 125.0, limits);
+  const BranchTable& fan = *shared;
   LayeredSearch cost;
   fan.for_each_piece(ranges, [&](const MonotonePiece& piece) {
     ++cost.pieces;
