@@ -317,7 +317,7 @@ Arrivals PropagationPaths::search_plane(const Vec3& from, const Vec3& to, double
                      return memory_->remember(key(Kept::caustics, need, limits), make,
                                               [](const Caustics& made) { return bytes_of(made); });
                    });
-      put_waves(
+      const bool bottom_held = put_waves(
           *solver, from.z(), to.z(), range, frequency, limits, found,
           [&](const CycleNeed& need, const CyclesMaker& make) {
             return memory_->remember(key(Kept::cycle_waves, need), make);
@@ -328,7 +328,7 @@ Arrivals PropagationPaths::search_plane(const Vec3& from, const Vec3& to, double
       if (rough) put_roughness(along_.environment(), frequency, limits.faintest, found);
       const OceanMemory kept{*memory_, identity_};
       auto more = diffracted_arrival(along_.environment(), from.z(), to.z(), range, frequency,
-                                     found, &kept);
+                                     found, &kept, !bottom_held);
       if (more && std::abs(more->launch_elevation) <= limits.max_launch_angle)
         found.push_back(std::move(*more));
     }
@@ -399,7 +399,8 @@ Arrivals PropagationPaths::followed(std::span<const Arrival> known, const Vec3& 
   for (const Arrival& path : known) {
     std::optional<Arrival> same;
     if (path.kind == ArrivalKind::diffracted)
-      same = diffracted_arrival(along_.environment(), from.z(), to.z(), range, frequency, &kept);
+      same = diffracted_arrival(along_.environment(), from.z(), to.z(), range, frequency, &kept,
+                                path.reflection != 1.0);
     else if (layered_)
       same = along_.follow(path, from.z(), to.z(), range, frequency, limits);
     else if (in_volume)

@@ -321,8 +321,10 @@ void hand_on(std::vector<WaveGroup>& groups, double flat) {
   for (std::size_t i = 0; i <= last; ++i) groups[i].lacking = kept[i];
 }
 
-/// Groups by cycles.
-std::vector<WaveGroup> cycle_groups(const FoundLeg& leg, const CyclesKeeper& keeper) {
+/// Groups by cycles.   \param bottom_held  whether what no ray carries in the water alone is taken
+/// from them, so that they hold all that the bottom does to it
+std::vector<WaveGroup> cycle_groups(const FoundLeg& leg, const CyclesKeeper& keeper,
+                                    bool& bottom_held) {
   const auto& [ocean, source_depth, receiver_depth, range, frequency, limits, found] = leg;
   // Of oceans whose boundaries return nothing where rays must not touch them so often; received at
   // the lower end, so that the way there and the way back have the same.
@@ -378,7 +380,10 @@ std::vector<WaveGroup> cycle_groups(const FoundLeg& leg, const CyclesKeeper& kee
     const bool surface = no_surface || (!flat && bounces > limits.max_surface_bounces),
                bottom = no_bottom || (!flat && bounces > limits.max_bottom_bounces);
     WaveGroup here{.lacking = waves_without(surface, bottom, number)};
-    if (!waterborne && !bottom) here.lacking -= waves_without(surface, true, number);
+    if (!waterborne && !bottom) {
+      here.lacking -= waves_without(surface, true, number);
+      bottom_held = true;
+    }
     for (std::size_t i = 0; i < found.size(); ++i) {
       const Arrival& ray = found[i];
       const double cycled = plain->cycled(omega * ray.horizontal_slowness);
@@ -449,11 +454,11 @@ void replace(const std::vector<Complex>& amplitudes, double energy, Arrivals& fo
 
 }  // namespace
 
-void put_waves(const EigenraySolver& solver, double source_depth, double receiver_depth,
+bool put_waves(const EigenraySolver& solver, double source_depth, double receiver_depth,
                double range, double frequency, const PathLimits& limits, Arrivals& found,
                const CyclesKeeper& keeper, const BranchKeeper& branches) {
   const Environment& ocean = solver.environment();
-  if (!(range > 0.0)) return;
+  if (!(range > 0.0)) return false;
   std::vector<RayError> errors =
       ray_errors(solver, source_depth, receiver_depth, frequency, limits, found);
   double energy = 0.0, wrong = 0.0, reflected = 0.0;
@@ -473,7 +478,7 @@ void put_waves(const EigenraySolver& solver, double source_depth, double receive
   });
   const double faded =
       turned ? 0.0 : faded_in(std::sqrt(reflected / energy) / tolerable_error - 1.0);
-  if (!by_cycles && !(faded > 0.0)) return;
+  if (!by_cycles && !(faded > 0.0)) return false;
 
   const FoundLeg leg{ocean, source_depth, receiver_depth, range, frequency, limits, found};
   if (faded > 0.0) {
@@ -487,12 +492,14 @@ void put_waves(const EigenraySolver& solver, double source_depth, double receive
       replace(amplitudes, energy, found);
     }
   }
-  if (!by_cycles) return;
+  if (!by_cycles) return false;
   std::vector<Complex> amplitudes;
   for (const Arrival& ray : found) amplitudes.push_back(ray.amplitude);
-  for (const WaveGroup& group : cycle_groups(leg, keeper))
+  bool bottom_held = false;
+  for (const WaveGroup& group : cycle_groups(leg, keeper, bottom_held))
     share(group, found, errors, frequency, amplitudes);
   replace(amplitudes, energy, found);
+  return bottom_held;
 }
 
 }  // namespace asdic::detail

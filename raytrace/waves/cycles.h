@@ -91,8 +91,10 @@ using CyclesKeeper =
 /// all do where their errors would be 1 % of the whole at most, and where it would take more than
 /// `most_cycle_steps`. What a `diffracted` arrival holds is left to it. \param solver  layered()
 /// \param found  all arrivals of these places within the limits \param keeper, branches  without
-/// them nothing is kept   \throws Interrupted
-void put_waves(const EigenraySolver& solver, double source_depth, double receiver_depth,
+/// them nothing is kept
+/// \return whether they hold all that the bottom does to the field in the water, so that a
+/// `diffracted` arrival is that of water without it   \throws Interrupted
+bool put_waves(const EigenraySolver& solver, double source_depth, double receiver_depth,
                double range, double frequency, const PathLimits& limits, Arrivals& found,
                const CyclesKeeper& keeper = {}, const BranchKeeper& branches = {});
 

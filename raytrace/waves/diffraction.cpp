@@ -127,10 +127,10 @@ Complex beside_bottom(const Environment& ocean, double source_depth, double rece
          share_beside_bottom(ocean, receiver_depth, slowness, frequency, wave.p, wave.by_receiver);
 }
 
-/// \param least  amplitude below which there is nothing
+/// \param least  amplitude below which there is nothing   \param with_bottom  close below an end
 std::optional<Arrival> louder_arrival(const Environment& ocean, double source_depth,
                                       double receiver_depth, double range, double frequency,
-                                      double least, const OceanMemory* kept) {
+                                      double least, const OceanMemory* kept, bool with_bottom) {
   const double c = ocean.water.at(receiver_depth).c;
   if (range * frequency < nearest_shadow * c) return std::nullopt;
   if (!diffraction_is_affordable(ocean, range, frequency, kept)) return std::nullopt;
@@ -142,13 +142,15 @@ std::optional<Arrival> louder_arrival(const Environment& ocean, double source_de
   if (!found) return std::nullopt;
   const WaveAt& wave = found->wave;
   const double slowness = wavenumber(wave.p, wave.along) / (2.0 * pi * frequency);
-  const Complex p = beside_bottom(ocean, source_depth, receiver_depth, frequency, wave);
+  const Complex p =
+      with_bottom ? beside_bottom(ocean, source_depth, receiver_depth, frequency, wave) : wave.p;
 
   Arrival path;
   path.kind = ArrivalKind::diffracted;
   path.delay = found->delay;
   path.amplitude = p * std::polar(1.0, 2.0 * pi * std::fmod(frequency * path.delay, 1.0));
-  path.spreading = std::abs(p);
+  path.spreading = std::abs(wave.p);
+  path.reflection = p / wave.p;
   path.horizontal_slowness = slowness;
   // p goes as e^{+ikz} with the depth of the source.
   path.launch_elevation =
@@ -221,20 +223,22 @@ bool diffraction_is_affordable(const Environment& ocean, double range, double fr
 
 std::optional<Arrival> diffracted_arrival(const Environment& ocean, double source_depth,
                                           double receiver_depth, double range, double frequency,
-                                          const OceanMemory* kept) {
-  return louder_arrival(ocean, source_depth, receiver_depth, range, frequency, 0.0, kept);
+                                          const OceanMemory* kept, bool beside_bottom) {
+  return louder_arrival(ocean, source_depth, receiver_depth, range, frequency, 0.0, kept,
+                        beside_bottom);
 }
 
 std::optional<Arrival> diffracted_arrival(const Environment& ocean, double source_depth,
                                           double receiver_depth, double range, double frequency,
-                                          const Arrivals& rays, const OceanMemory* kept) {
+                                          const Arrivals& rays, const OceanMemory* kept,
+                                          bool beside_bottom) {
   double power = 0.0;
   for (const Arrival& ray : rays) {
     if (ray.bottom_bounces == 0) return std::nullopt;
     power += std::norm(ray.amplitude);
   }
   return louder_arrival(ocean, source_depth, receiver_depth, range, frequency,
-                        faintest_beside * std::sqrt(power), kept);
+                        faintest_beside * std::sqrt(power), kept, beside_bottom);
 }
 
 }  // namespace asdic::detail

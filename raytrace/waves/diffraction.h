@@ -18,18 +18,21 @@ namespace asdic::detail {
 ///
 /// What places share is kept: an arrival nearby costs microseconds (waterborne.h).
 /// \param ocean  is_layered()   \param rays  that were found   \param kept  where what places have
-/// in common is kept; null: nowhere
+/// in common is kept; null: nowhere   \param beside_bottom  with what a bottom close below an end
+/// sends back at once, as `reflection`: not where other paths hold it (put_waves())
 [[nodiscard]] std::optional<Arrival> diffracted_arrival(const Environment& ocean,
                                                         double source_depth, double receiver_depth,
                                                         double range, double frequency,
                                                         const Arrivals& rays,
-                                                        const OceanMemory* kept = nullptr);
+                                                        const OceanMemory* kept = nullptr,
+                                                        bool beside_bottom = true);
 
 /// The same whatever rays there are, for a path that is followed.
 [[nodiscard]] std::optional<Arrival> diffracted_arrival(const Environment& ocean,
                                                         double source_depth, double receiver_depth,
                                                         double range, double frequency,
-                                                        const OceanMemory* kept = nullptr);
+                                                        const OceanMemory* kept = nullptr,
+                                                        bool beside_bottom = true);
 
 /// About the pressure that waves without the bottom have at a place where the direct ray is in its
 /// shadow, so that rays arrive off the surface alone, less these rays [1/m × 1 m]. It has no
