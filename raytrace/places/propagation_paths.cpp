@@ -277,6 +277,34 @@ ExactKey PropagationPaths::leg_key(Kept kind, const Vec3& from, const Vec3& to, 
   return leg;
 }
 
+namespace {
+
+/// Of direct rays that all leave within half a Fresnel zone of the straight line, that which
+/// spreads most like a straight one: the water bends them by less than a wave notices, so together
+/// they are one. About a depth of least speed there are two, or many that cross it again and again.
+/// \param wavelength  [m]
+void keep_one_level_ray(const Vec3& from, const Vec3& to, double wavelength, Arrivals& found) {
+  const Vec3 line = to - from;
+  const double length = line.norm(), elevation = std::asin(-line.z() / length),
+               zone = std::sqrt(wavelength / length);
+  const auto is_direct = [](const Arrival& ray) {
+    return ray.kind == ArrivalKind::ray && ray.surface_bounces + ray.bottom_bounces == 0;
+  };
+  Arrivals direct;
+  for (const Arrival& ray : found) {
+    if (!is_direct(ray)) continue;
+    if (!(std::hypot(ray.launch_elevation - elevation, ray.launch_deflection) < 0.5 * zone)) return;
+    direct.push_back(ray);
+  }
+  if (direct.size() < 2) return;
+  const auto kept = std::ranges::min_element(direct, {}, &Arrival::delay);
+  std::erase_if(found, is_direct);
+  found.push_back(std::move(*kept));
+  sort_by_delay(found);
+}
+
+}  // namespace
+
 Arrivals PropagationPaths::search(const Vec3& from, const Vec3& to, double frequency,
                                   const PathLimits& limits) const {
   if (const VolumeOcean* ocean = volume()) {
@@ -284,9 +312,13 @@ Arrivals PropagationPaths::search(const Vec3& from, const Vec3& to, double frequ
     Arrivals found = volume_eigenrays(VolumeTracer(*ocean, frequency), from, to, limits, &report,
                                       search_plane(from, to, frequency, limits));
     if (report.given_up > 0) memory_->count_ended_search();
+    if (limits.diffraction) keep_one_level_ray(from, to, speed_at(from) / frequency, found);
     return bounded(std::move(found), from, to, frequency, limits);
   }
-  return bounded(search_plane(from, to, frequency, limits), from, to, frequency, limits);
+  Arrivals found = search_plane(from, to, frequency, limits);
+  if (!layered_ && limits.diffraction)
+    keep_one_level_ray(from, to, speed_at(from) / frequency, found);
+  return bounded(std::move(found), from, to, frequency, limits);
 }
 
 Arrivals PropagationPaths::bounded(Arrivals found, const Vec3& from, const Vec3& to,
