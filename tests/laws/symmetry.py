@@ -11,8 +11,10 @@ from law import (LAWS, Silent, alike, alike_in_the_mean, copied, db, drawn_share
 def reciprocal(s, p):
     """The leg back is the leg there: energy and coherent sum, source and receiver at one place and at rest.
 
-    Waves share what is left to within 1 % of a leg (docs/theory/waves.md, Cycles), in either direction: 2 %.
+    Waves share what is left to within 1 % of a leg (docs/theory/waves.md, Cycles), in either direction: 2 %. Cylindrical
+    spreading turns slopes about the source, which is another sea from either end.
     """
+    s["environment"].pop("spreading", None)
     record = ping(one_place(still(plain(s))))
     out, home = need_leg(record, 0), need_leg(record, 1)
     (there, total), (back, _) = field(out, s["_hz"]), field(home, s["_hz"])
