@@ -150,6 +150,34 @@ TEST(WideBand, IsChosenForEachTargetByItself) {
   EXPECT_LT(off, 0.0075 * peak);
 }
 
+// The peak of an echo by paths that are received seconds apart is what the samples hold of the
+// loudest, to 0.05 dB, whichever comes first: that in the water or, by a beam turned to the floor,
+// one off it. Only paths that can be the loudest are synthesised for it.
+TEST(WideBand, PeakIsThatOfTheLoudestPathsInTheSamples) {
+  for (const double elevation : {0.0, 67.0, -67.0}) {
+    Scenario s = near_and_far();
+    s.targets = {{.name = "target",
+                  .track = {.start = {.position = {0.0, 2000.0, 100.0}}},
+                  .strength_db = 20.0}};
+    s.environment.bottom = {.depth = 2500.0, .material = Rigid{}};
+    s.transmitters[0].beam = LineBeam{.taper = Taper::rectangular, .beamwidth = radians(20.0)};
+    s.transmitters[0].elevation = radians(elevation);
+    s.propagation.max_bottom_bounces = 1;
+    s.propagation.max_surface_bounces = 0;
+    s.propagation.band = BandOfLosses::wide;
+    s.pings.samples = Samples::baseband;
+    const PingSimulator simulator(s);
+    const PingRecord record = simulator.sound(1);
+    double peak = 0.0;
+    for (std::size_t i = 0; i + 1 < record.pressure.size(); i += 2)
+      peak = std::max(peak, std::hypot(double(record.pressure[i]), double(record.pressure[i + 1])));
+    const TargetSummary said = simulator.levels(1).summary.at(0);
+    EXPECT_EQ(said.paths, 4) << elevation;
+    EXPECT_NEAR(said.echo_peak_db, db_from_amplitude(peak / std::sqrt(2.0) * 1e6), 0.05)
+        << elevation;
+  }
+}
+
 /// A few hundred scatterers of surface, bottom and a layer under a sweep from 2.5 to 5.5 kHz.
 Scenario wide_sea() {
   Scenario s = support::even_sea();
