@@ -50,6 +50,29 @@ class EveryProfile : public testing::TestWithParam<NamedProfile> {
 INSTANTIATE_TEST_SUITE_P(Layered, EveryProfile, testing::ValuesIn(profiles()),
                          [](const auto& test) { return support::test_id(test.param.first); });
 
+// Rays kept from a search at another frequency, of other depths or within other limits, are those
+// of a solver that keeps none: bit for bit.
+TEST_P(EveryProfile, KeptRaysAreThoseOfANewSolver) {
+  const EigenraySolver solver(ocean());
+  const auto ask = [](const EigenraySolver& of, double receiver, double frequency, int bounces) {
+    return of.find(4500.0, receiver, 12.5e3, frequency,
+                   {.max_surface_bounces = bounces, .max_bottom_bounces = bounces});
+  };
+  for (const double frequency : {3500.0, 300.0, 3500.0})
+    for (const double receiver : {125.0, 126.0})
+      for (const int bounces : {2, 1}) {
+        const Arrivals kept = ask(solver, receiver, frequency, bounces),
+                       anew = ask(EigenraySolver(ocean()), receiver, frequency, bounces);
+        ASSERT_EQ(kept.size(), anew.size());
+        ASSERT_FALSE(kept.empty());
+        for (std::size_t i = 0; i < kept.size(); ++i) {
+          EXPECT_EQ(kept[i].delay, anew[i].delay);
+          EXPECT_EQ(kept[i].amplitude, anew[i].amplitude);
+          EXPECT_EQ(kept[i].bounces.size(), anew[i].bounces.size());
+        }
+      }
+}
+
 // dr/dσ of every branch agrees with a central difference: it is what amplitudes and caustics come
 // from. The difference of ranges that are right to 1e-10 (the quadrature) is wrong by 1e-10·r/h,
 // its truncation by h²r‴/6 ≈ 1e-4 of the slope.
