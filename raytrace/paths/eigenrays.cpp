@@ -111,22 +111,38 @@ struct EigenraySolver::LayeredOcean {
   }
 };
 
+namespace {
+
+/// The last few of something by key. What is not made is not kept.
+template <class Key, class Value, std::size_t most>
+class LastFew {
+ public:
+  template <class Make>
+  std::shared_ptr<const Value> of(const Key& key, const Make& make) {
+    {
+      const std::lock_guard lock(mutex_);
+      const auto known = std::ranges::find(kept_, key, &Kept::first);
+      if (known != kept_.end()) return known->second;
+    }
+    std::shared_ptr<const Value> made = make();
+    if (made == nullptr) return made;
+    const std::lock_guard lock(mutex_);
+    if (kept_.size() == most) kept_.erase(kept_.begin());
+    kept_.emplace_back(key, made);
+    return made;
+  }
+
+ private:
+  using Kept = std::pair<Key, std::shared_ptr<const Value>>;
+  std::mutex mutex_;
+  std::vector<Kept> kept_;  // the latest last
+};
+
+}  // namespace
+
 /// The last columns that paths were followed in: ends move, their depths seldom.
 struct EigenraySolver::Columns {
-  static constexpr std::size_t most = 4;
-  std::mutex mutex;
-  std::vector<std::shared_ptr<const WaterBetween>> of;  // the latest last
-
-  std::shared_ptr<const WaterBetween> between(double source, double receiver,
-                                              const KeptOcean& ocean) {
-    const std::lock_guard lock(mutex);
-    const auto known = std::find_if(of.begin(), of.end(), [&](const auto& water) {
-      return water->source_depth == source && water->receiver_depth == receiver;
-    });
-    if (known != of.end()) return *known;
-    if (of.size() == most) of.erase(of.begin());
-    return of.emplace_back(std::make_shared<const WaterBetween>(source, receiver, ocean));
-  }
+  LastFew<std::pair<double, double>, WaterBetween, 4> by_depths;
 };
 
 namespace {
@@ -194,38 +210,15 @@ auto numbers_of(const PathLimits& limits) {
 }
 using FanKey = std::tuple<double, double, decltype(numbers_of(PathLimits{}))>;
 
-/// The last few of something by key.
-template <class Key, class Value, std::size_t most>
-class LastFew {
- public:
-  template <class Make>
-  std::shared_ptr<const Value> of(const Key& key, const Make& make) {
-    {
-      const std::lock_guard lock(mutex_);
-      const auto known = std::ranges::find(kept_, key, &Kept::first);
-      if (known != kept_.end()) return known->second;
-    }
-    std::shared_ptr<const Value> made = make();
-    const std::lock_guard lock(mutex_);
-    if (kept_.size() == most) kept_.erase(kept_.begin());
-    kept_.emplace_back(key, made);
-    return made;
-  }
-
- private:
-  using Kept = std::pair<Key, std::shared_ptr<const Value>>;
-  std::mutex mutex_;
-  std::vector<Kept> kept_;  // the latest last
-};
-
 }  // namespace
 
 /// The last fans, and the last rays to one receiver: waves over a band ask for those at each of its
 /// frequencies, and the rays are the same.
 struct EigenraySolver::Searches {
-  static constexpr std::size_t most_fans = 8, most_rays = 32;
-  LastFew<FanKey, BranchTable, most_fans> fans;
-  LastFew<std::pair<FanKey, double>, SearchedRays, most_rays> rays;
+  /// Rays of a search that is kept at most, each some 300 bytes: all together take 10 MB.
+  static constexpr std::size_t most_rays = 1024;
+  LastFew<FanKey, BranchTable, 8> fans;
+  LastFew<std::pair<FanKey, double>, SearchedRays, 32> rays;
 };
 
 /// The tracers of an environment by frequency: a sonar works at a few.
@@ -306,7 +299,9 @@ std::optional<Arrival> EigenraySolver::follow(const Arrival& known, double sourc
   const bool flat = is_flat(known, environment_.water.at(source_depth));
   if (!layered_ || flat || !(range >= least_range)) return std::nullopt;
   receiver_depth = summed_depth(source_depth, receiver_depth, environment_);
-  const auto water = columns_->between(source_depth, receiver_depth, water_->kept());
+  const auto water = columns_->by_depths.of({source_depth, receiver_depth}, [&] {
+    return std::make_shared<const WaterBetween>(source_depth, receiver_depth, water_->kept());
+  });
   return followed_branch(environment_, *water, range, frequency, known, limits);
 }
 
@@ -350,13 +345,19 @@ std::vector<Arrivals> EigenraySolver::find(double source_depth, double receiver_
   } else {
     const FanKey between{source_depth, summed_depth(source_depth, receiver_depth, environment_),
                          numbers_of(limits)};
-    const auto rays = searches_->rays.of({between, wanted.front()}, [&] {
-      auto made = std::make_shared<SearchedRays>(fan, wanted, order);
-      made->solve([&](const FanInterval& interval, const SimdTasks& batch, const FoundRays& one) {
-        made->batches.push_back({interval, batch, one});
-      });
-      return made;
-    });
+    std::shared_ptr<const SearchedRays> too_many;
+    auto rays =
+        searches_->rays.of({between, wanted.front()}, [&]() -> std::shared_ptr<const SearchedRays> {
+          auto made = std::make_shared<SearchedRays>(fan, wanted, order);
+          made->solve(
+              [&](const FanInterval& interval, const SimdTasks& batch, const FoundRays& one) {
+                made->batches.push_back({interval, batch, one});
+              });
+          if (made->tasks.size() <= Searches::most_rays) return made;
+          too_many = made;
+          return nullptr;
+        });
+    if (rays == nullptr) rays = too_many;
     reserve(*rays);
     for (const auto& [interval, batch, one] : rays->batches) build(interval, batch, one);
   }

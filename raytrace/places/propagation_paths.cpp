@@ -279,10 +279,9 @@ ExactKey PropagationPaths::leg_key(Kept kind, const Vec3& from, const Vec3& to, 
 
 namespace {
 
-/// Of direct rays that all leave within half a Fresnel zone of the straight line, that which
-/// spreads most like a straight one: the water bends them by less than a wave notices, so together
-/// they are one. About a depth of least speed there are two, or many that cross it again and again.
-/// \param wavelength  [m]
+/// Keeps the earliest of direct rays that all leave within half a Fresnel zone of the straight
+/// line: the water bends them by less than a wave notices, so together they are one. About a depth
+/// of least speed there are two, or many that cross it again and again. \param wavelength  [m]
 void keep_one_level_ray(const Vec3& from, const Vec3& to, double wavelength, Arrivals& found) {
   const Vec3 line = to - from;
   const double length = line.norm(), elevation = std::asin(-line.z() / length),

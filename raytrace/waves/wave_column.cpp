@@ -229,7 +229,7 @@ WaveColumn::Squared WaveColumn::squared(std::size_t edge) const noexcept {
 }
 
 std::size_t WaveColumn::slowest_edge() const noexcept {
-  // By the water itself: layers' lines are off by more than depths a tenth of a millimetre apart.
+  // The water's own speeds: layers' lines are off by more than those of depths 0.1 mm apart differ.
   const auto slower = [&](std::size_t a, std::size_t than) {
     const auto speed = [&](std::size_t edge) { return environment_.water.at(edges_[edge]).c; };
     return speed(a) < speed(than) * (1.0 + 1e-12);

@@ -105,13 +105,14 @@ void receive(const ScatteringField& field, const Ground& ground, const AudibleLi
     if (ground.places.empty()) add(h, *pair);
   }
   if (ground.places.empty() || memory.by.empty()) return;
+  // Where the receiver is when the first of the pairs is received, as for the piece's own middle.
+  const Vec2 receiver = sheet.ends().receiver_at(memory.by.front().pair->delay).head<2>();
   std::stable_sort(memory.by.begin(), memory.by.end(),
                    [](const ReceptionMemory::By& a, const ReceptionMemory::By& b) {
                      return std::pair(a.pair->back_index, a.pair->receiver) <
                             std::pair(b.pair->back_index, b.pair->receiver);
                    });
   const Vec2 source = sheet.ends().source.position.head<2>();
-  const Vec2 receiver = sheet.ends().receiver_at(memory.by.front().pair->delay).head<2>();
   for (const Vec2& place : ground.places) {
     const WayBeside out(source, ground.middle, place), back(receiver, ground.middle, place);
     const auto move = [&](PathPair& pair) {

@@ -62,13 +62,13 @@ TEST_P(EveryProfile, KeptRaysAreThoseOfANewSolver) {
     for (const double receiver : {125.0, 126.0})
       for (const int bounces : {2, 1}) {
         const Arrivals kept = ask(solver, receiver, frequency, bounces),
-                       anew = ask(EigenraySolver(ocean()), receiver, frequency, bounces);
-        ASSERT_EQ(kept.size(), anew.size());
+                       searched = ask(EigenraySolver(ocean()), receiver, frequency, bounces);
+        ASSERT_EQ(kept.size(), searched.size());
         ASSERT_FALSE(kept.empty());
         for (std::size_t i = 0; i < kept.size(); ++i) {
-          EXPECT_EQ(kept[i].delay, anew[i].delay);
-          EXPECT_EQ(kept[i].amplitude, anew[i].amplitude);
-          EXPECT_EQ(kept[i].bounces.size(), anew[i].bounces.size());
+          EXPECT_EQ(kept[i].delay, searched[i].delay);
+          EXPECT_EQ(kept[i].amplitude, searched[i].amplitude);
+          EXPECT_EQ(kept[i].bounces.size(), searched[i].bounces.size());
         }
       }
 }
